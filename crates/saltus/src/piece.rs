@@ -11,12 +11,29 @@ pub(crate) fn horner<S: State>(coefficients: &[S], s: f64) -> S {
         [c0, c1, c2] => c0.with(|i| (c2.get(i) * s + c1.get(i)) * s + c0.get(i)),
         _ if coefficients.len() > LONG => coefficients[0].with(|i| value_and_slope(coefficients, |c| c.get(i), s).0),
         _ => {
-            // Power by power, side by side: no coordinate waits for itself.
-            let last = coefficients.len() - 1;
-            let powers = coefficients[..last].iter().rev();
-            powers.fold(coefficients[last], |sum, c| c.with(|i| sum.get(i) * s + c.get(i)))
+            let [x] = summed(coefficients, [s]);
+            x
         }
     }
+}
+
+/// The same at several times.
+#[inline]
+pub(crate) fn horner_each<S: State, const K: usize>(coefficients: &[S], times: [f64; K]) -> [S; K] {
+    if coefficients.len() > LONG { times.map(|s| horner(coefficients, s)) } else { summed(coefficients, times) }
+}
+
+/// Power by power, side by side: no coordinate and no time waits for itself.
+#[inline(always)]
+fn summed<S: State, const K: usize>(coefficients: &[S], times: [f64; K]) -> [S; K] {
+    let last = coefficients.len() - 1;
+    let mut sums = [coefficients[last]; K];
+    for c in coefficients[..last].iter().rev() {
+        for (sum, s) in sums.iter_mut().zip(times) {
+            *sum = c.with(|i| sum.get(i) * s + c.get(i));
+        }
+    }
+    sums
 }
 
 /// More coefficients than any stepper's dense output has.

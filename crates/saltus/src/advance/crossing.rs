@@ -11,7 +11,6 @@ use crate::error::Error;
 use crate::inspection::Inspection;
 use crate::observe::Observer;
 use crate::piece::{LONG, horner};
-use crate::poly::Bernstein;
 use crate::state::State;
 use crate::step::Stepper;
 use crate::time::{Time, resolution};
@@ -30,7 +29,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         mode: A::Mode,
         step: Step<'_, A::State>,
         range: Range,
-        mut observer: Option<&mut impl Observer<A>>,
+        mut observer: Option<&mut dyn Observer<A>>,
     ) -> Result<Option<OnStep<A>>, Error> {
         let mut found: Option<OnStep<A>> = None;
         let mut powers = Powers::new();
@@ -72,7 +71,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 }
                 FirstFall::Unclear => {
                     let searched = match along.as_ref().and_then(Along::bernstein) {
-                        Some(p) => self.falls_by_polynomial(edge, step, limit, (start, level), &p),
+                        Some((p, margin, bend)) => self.searched(edge, step, level, |above| {
+                            first_fall_of_polynomial(&p, margin, bend, above, limit, start)
+                        }),
                         None => match self.unclear(edge, step, limit, (start, level), &mut shared) {
                             Some(values) => self.falls_by_values(edge, step, limit, (start, level), &values),
                             None => Ok(Searched::solved(None)),
@@ -137,22 +138,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         unlevelled(searched, level, &mut guard)
     }
 
-    /// Where the guard of `edge` falls on a step, by the sign of its powers in the Bernstein basis.
-    #[inline(never)] // few need it: what is always done stays short
-    fn falls_by_polynomial(
-        &mut self,
-        edge: A::Edge,
-        step: Step<'_, A::State>,
-        limit: f64,
-        (start, level): (Start, f64),
-        (p, margin, bend): &(Bernstein, f64, f64),
-    ) -> Result<Searched, Undefined> {
-        let search =
-            |above: &mut dyn FnMut(f64) -> f64| first_fall_of_polynomial(p, *margin, *bend, above, limit, start);
-        self.searched(edge, step, level, search)
-    }
-
-    /// The same by its `values` and further ones.
+    /// Where the guard of `edge` falls on a step, by its `values` and further ones.
     #[inline(never)] // few need it
     fn falls_by_values(
         &mut self,
@@ -189,7 +175,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
 
     /// What a `search` finds of the guard of `edge` less its `level` on a step, of the guard
     /// itself.
-    #[inline]
+    #[inline(never)] // few need it: what is always done stays short
     fn searched(
         &mut self,
         edge: A::Edge,
@@ -268,8 +254,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         // So that the rounding of time and what the guard bends by weigh alike.
         let (longest, t) = (self.memory.longest_duration, now.seconds());
         let far = ROUGHLY * longest * (resolution(t) / longest).cbrt();
-        let [before, after] = [root - far, root + far].map(|s| self.guard(edge, now.after(s).seconds(), &at(s)));
-        after > before
+        let guard = |s: f64| self.guard(edge, now.after(s).seconds(), &at(s));
+        guard(root + far) > guard(root - far)
     }
 
     /// The guard of `edge` is not a number a time `s` after `now`.

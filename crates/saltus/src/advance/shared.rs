@@ -3,7 +3,7 @@
 use smallvec::SmallVec;
 
 use crate::cross::{SAMPLES, sample_times};
-use crate::piece::{LONG, horner};
+use crate::piece::{LONG, horner, horner_each};
 use crate::state::State;
 use crate::time::Time;
 
@@ -70,25 +70,14 @@ impl<'c, S: State> Shared<'c, S> {
 }
 
 /// Time and state at the sample times of a step.
-#[inline]
+#[inline(never)]
 fn sampled<S: State>(
     Step { now, c, scale }: Step<'_, S>,
     limit: f64,
     smooth: Smooth,
 ) -> ([f64; SAMPLES], [S; SAMPLES]) {
     let since = sample_times(0.0, limit);
-    let parts = since.map(|s| s / scale);
-    let mut states = [c[c.len() - 1]; SAMPLES];
-    if c.len() > LONG {
-        states = parts.map(|u| horner(c, u));
-    } else {
-        // All of them power by power, so that none waits for itself.
-        for c in c.iter().rev().skip(1) {
-            for (x, u) in states.iter_mut().zip(parts) {
-                *x = c.with(|i| x.get(i) * u + c.get(i));
-            }
-        }
-    }
+    let states = horner_each(c, since.map(|s| s / scale));
     (since.map(|s| smooth.within(now.after(s).seconds())), states)
 }
 

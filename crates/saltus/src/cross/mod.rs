@@ -144,11 +144,11 @@ pub(crate) fn first_fall_on_step(
     bend: f64,
     tick: f64,
 ) -> Result<Searched, Undefined> {
-    if start != Start::Spent {
-        let samples = Samples::of(values, 0.0, span);
-        if samples.stay_above() {
-            return Ok(Searched { turn: samples.turn(span), ..Searched::solved(None) });
-        }
+    if start != Start::Spent
+        && let Ok(samples) = Samples::of(values, 0.0, span)
+        && samples.stay_above()
+    {
+        return Ok(Searched { turn: samples.turn(span), ..Searched::solved(None) });
     }
     Search::new(guard, span, bend, tick).sampled_at(values).first_fall(start, None)
 }
@@ -221,6 +221,20 @@ mod tests {
         assert!(matches!(first_fall(|s| (0.5 - s).sqrt() + 1.0, 1.0, Start::Open), Err(Undefined(s)) if s > 0.49));
         let found = fall(|s| if s > 0.6 { f64::NAN } else { 0.25 - s }, 1.0);
         assert!((found.unwrap() - 0.25).abs() < 1e-15);
+    }
+
+    /// Samples at hand change nothing, be one of them no number.
+    #[test]
+    fn samples_at_hand_change_nothing() {
+        let times = sample_times(0.0, 1.0);
+        for hole in times.into_iter().skip(1).chain([2.0]) {
+            for bent in [0.1, 1.0, 3.0] {
+                let guard = |s: f64| if (s - hole).abs() < 1e-3 { f64::NAN } else { 1.0 - bent * s * (1.0 - s) };
+                let at_hand = first_fall_on_step(&mut { guard }, &times.map(guard), 1.0, Start::Open, 0.0, 0.0);
+                let asked = first_fall_on_arc(&mut { guard }, guard(0.0), 1.0, Start::Open, 0.0);
+                assert_eq!(at_hand, asked, "a hole at {hole}, bent by {bent}");
+            }
+        }
     }
 
     #[test]

@@ -164,8 +164,7 @@ impl<'a> Search<'a> {
         }
         self.evaluations += SAMPLES as u32;
         self.largest = values.iter().fold(self.largest, |largest, value| largest.max(value.abs()));
-        let undefined = values.iter().position(|value| value.is_nan());
-        undefined.map_or(Ok(values), |k| Err(Undefined(sample_times(a, b)[k])))
+        Ok(values)
     }
 
     pub(super) fn weaken(&mut self, evidence: Evidence) {

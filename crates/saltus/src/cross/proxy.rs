@@ -3,7 +3,7 @@
 
 use crate::poly::{Bernstein, SUMMED};
 
-use super::chebyshev::{CHECKS, SAMPLES};
+use super::chebyshev::{CHECKS, SAMPLES, sample_times};
 use super::probe::Search;
 use super::{Undefined, chebyshev};
 
@@ -28,7 +28,7 @@ pub(crate) fn stay_clear(values: &[f64; SAMPLES]) -> bool {
 impl Search<'_> {
     /// The guard at the sample times of `[a, b]`.
     pub(super) fn sampled(&mut self, a: f64, b: f64) -> Result<Samples, Undefined> {
-        Ok(Samples::of(&self.values(a, b)?, a, b))
+        Samples::of(&self.values(a, b)?, a, b)
     }
 }
 
@@ -55,8 +55,11 @@ pub(super) struct Samples {
 }
 
 impl Samples {
-    /// Of values at the sample times of `[a, b]`.
-    pub(super) fn of(values: &[f64; SAMPLES], a: f64, b: f64) -> Self {
+    /// Of values at the sample times of `[a, b]`, if all of them are numbers.
+    pub(super) fn of(values: &[f64; SAMPLES], a: f64, b: f64) -> Result<Self, Undefined> {
+        if let Some(k) = values.iter().position(|value| value.is_nan()) {
+            return Err(Undefined(sample_times(a, b)[k]));
+        }
         let (nodes, checks) = values.split_first_chunk().unwrap_or((&[0.0; 9], &[]));
         let series = chebyshev::series(nodes);
         let far = checks.iter().zip(CHECKS).map(|(check, at)| (check - chebyshev::sum(&series, at)).abs());
@@ -65,7 +68,7 @@ impl Samples {
         // The nodes themselves are rounded, and the state at them likewise.
         let spacing = (b.next_up() - b) / (b - a);
         let least = nodes.iter().fold(f64::INFINITY, |least, &value| least.min(value));
-        Self { series, varies, off, spacing, start: nodes[0], end: nodes[8], least, values: *nodes }
+        Ok(Self { series, varies, off, spacing, start: nodes[0], end: nodes[8], least, values: *nodes })
     }
 
     /// Between which times in 0..=b, the interval, the interpolant turns up from its least value,
@@ -145,7 +148,7 @@ mod tests {
             let first = 10.0_f64.powi(scale);
             let all: [f64; SAMPLES] = std::array::from_fn(|k| if k == 0 { first } else { first + 0.999 / CLEAR * first * ends[k] });
             prop_assert!(stay_clear(&all));
-            prop_assert!(Samples::of(&all, 0.0, 1.0).stay_above());
+            prop_assert!(Samples::of(&all, 0.0, 1.0).unwrap().stay_above());
         }
     }
 }
