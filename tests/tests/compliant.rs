@@ -2,19 +2,16 @@
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
-use std::fmt::Debug;
-
 use proptest::prelude::*;
 use saltus::nalgebra::Vector2;
-use saltus::step::Stepper;
-use saltus::{Dop853, Rodas5P, Run, RunOf, Simulation, Stop, Tsit5};
+use saltus::{Auto, Dop853, Rodas5P, Run, RunOf, Simulation, Stop, Tsit5};
 use saltus_bounce::compliant::{Moment, Stage};
 use saltus_bounce::contact::{ContactLaw, Hertz, HuntCrossley, KelvinVoigt};
 use saltus_bounce::{Compliant, Cor, Drop};
 
 /// A run by steps that are as exact as they get.
 fn tight<L: ContactLaw>(ball: &Compliant<L>, stage: Stage, start: Vector2<f64>, end: f64) -> RunOf<Compliant<L>> {
-    let simulation = Simulation::of(ball).stepper(Dop853).tolerance(1e-14).absolute_tolerance(1e-20);
+    let simulation = Simulation::of(ball).stepper(Auto::from(Dop853)).tolerance(1e-14).absolute_tolerance(1e-20);
     simulation.run(stage, start, 0.0..end).unwrap()
 }
 
@@ -25,7 +22,7 @@ fn released(run: &Run<Stage, Moment, Vector2<f64>>) -> Vector2<f64> {
 
 /// What a contact at 10¹² in the law's own unit costs, and how far the COR is from the one
 /// announced.
-fn stiffest<L: ContactLaw>(law: L, stepper: impl Stepper, tolerance: f64) -> (u64, f64) {
+fn stiffest<L: ContactLaw>(law: L, stepper: Auto, tolerance: f64) -> (u64, f64) {
     let ball = Compliant::new(0.1, 0.0, law).unwrap();
     let (stage, start) = ball.released(0.2, -2.0);
     let simulation = Simulation::of(&ball).stepper(stepper).tolerance(tolerance).absolute_tolerance(tolerance * 1e-6);
@@ -39,7 +36,7 @@ fn stiffest<L: ContactLaw>(law: L, stepper: impl Stepper, tolerance: f64) -> (u6
 /// announced COR.
 #[test]
 fn the_stiffest_contacts() {
-    fn each(stepper: impl Stepper + Debug, tolerance: f64, allowed: [u64; 4]) {
+    fn each(stepper: Auto, tolerance: f64, allowed: [u64; 4]) {
         let costs = [
             stiffest(KelvinVoigt::new(1e12, 1e5).unwrap(), stepper, tolerance),
             stiffest(Hertz::new(1e12).unwrap(), stepper, tolerance),
@@ -51,12 +48,12 @@ fn the_stiffest_contacts() {
             assert!(steps <= allowed && off <= 20.0 * tolerance + 1e-14, "{stepper:?} {tolerance:e}: {costs:?}");
         }
     }
-    each(Tsit5, 1e-6, [0, 30, 30, 60]);
-    each(Rodas5P, 1e-6, [0, 40, 40, 80]);
-    each(Dop853, 1e-9, [0, 35, 35, 65]);
-    each(Tsit5, 1e-9, [0, 100, 100, 200]);
-    each(Rodas5P, 1e-9, [0, 130, 140, 280]);
-    each(Dop853, 1e-12, [0, 70, 70, 140]);
+    each(Tsit5.into(), 1e-6, [0, 30, 30, 60]);
+    each(Rodas5P.into(), 1e-6, [0, 40, 40, 80]);
+    each(Dop853.into(), 1e-9, [0, 35, 35, 65]);
+    each(Tsit5.into(), 1e-9, [0, 100, 100, 200]);
+    each(Rodas5P.into(), 1e-9, [0, 130, 140, 280]);
+    each(Dop853.into(), 1e-12, [0, 70, 70, 140]);
 }
 
 /// The third contact of a ball dropped from 1 m comes later than without deformation, in proportion

@@ -4,7 +4,7 @@
 
 use nalgebra::{Vector2, vector};
 use proptest::prelude::*;
-use saltus::{Automaton, Dop853, ErrorKind, Filippov, Rodas5P, Side, Sides, Simulation, Stop, Tsit5, TwoSided};
+use saltus::{Auto, Automaton, Dop853, ErrorKind, Filippov, Rodas5P, Side, Sides, Simulation, Stop, Tsit5, TwoSided};
 
 /// Slides begin and end many times, at every phase, on a surface that moves and is no coordinate:
 /// each slide is one arc, and nothing chatters.
@@ -107,15 +107,9 @@ proptest! {
     ) {
         let driven = Filippov::of(Driven { push, rate, phase, tilt, sway, origin });
         let tolerance = 10.0_f64.powf(-digits);
-        let run = Simulation::of(&driven).tolerance(tolerance);
-        let (start, span) = (vector![origin + 1.0, 0.5], 0.0..20.0);
-        let run = match method {
-            0 => run.run(Side::Above, start, span),
-            1 => run.stepper(Tsit5).run(Side::Above, start, span),
-            2 => run.stepper(Dop853).run(Side::Above, start, span),
-            _ => run.stepper(Rodas5P).run(Side::Above, start, span),
-        };
-        let run = run.unwrap();
+        let method = [Auto::new(), Tsit5.into(), Dop853.into(), Rodas5P.into()][method];
+        let run = Simulation::of(&driven).stepper(method).tolerance(tolerance);
+        let run = run.run(Side::Above, vector![origin + 1.0, 0.5], 0.0..20.0).unwrap();
         let jumps = run.trajectory.jumps();
         for (jump, next) in jumps.iter().zip(&jumps[1..]) {
             prop_assert!(next.t() - jump.t() > 1e-6, "{jump:?} then {next:?}");

@@ -3,11 +3,14 @@
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
+mod methods;
+
 use proptest::prelude::*;
 use saltus::{
-    About, Automaton, Dop853, Edge, Edges, Entry, ErrorKind, Hybrid, Limit, Refusal, Rodas5P, Signal, Simulation,
-    Solution, Stop, Tsit5,
+    About, Automaton, Edge, Edges, Entry, ErrorKind, Hybrid, Limit, Refusal, Signal, Simulation, Solution, Stop,
 };
+
+use methods::methods;
 
 /// A rising line with a mark at each integer, watched by as many edges, listed in one of three
 /// ways.
@@ -200,13 +203,8 @@ fn gauge<'a>(ends: f64, marks: f64) -> Hybrid<'a, f64> {
 fn refused(hybrid: &Hybrid<'_, f64>, x: f64) -> [Result<f64, (Option<String>, String)>; 4] {
     let (mode, span) = (if x < 2.0 { "sure" } else { "free" }, x..x + 2.5);
     let run = Simulation::of(hybrid);
-    let failures = [
-        run.run(mode, x, span.clone()).map(|run| run.end.state),
-        run.stepper(Tsit5).run(mode, x, span.clone()).map(|run| run.end.state),
-        run.stepper(Dop853).run(mode, x, span.clone()).map(|run| run.end.state),
-        run.stepper(Rodas5P).run(mode, x, span).map(|run| run.end.state),
-    ];
-    failures.map(|outcome| {
+    methods().map(|method| {
+        let outcome = run.stepper(method).run(mode, x, span.clone()).map(|run| run.end.state);
         outcome.map_err(|failed| {
             assert_eq!(failed.error.kind(), ErrorKind::Refused);
             (failed.error.edge().map(str::to_owned), failed.error.to_string())

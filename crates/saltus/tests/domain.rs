@@ -1,10 +1,11 @@
 //! A flow that is no number beyond its guard: the run comes to the crossing from inside.
 
+mod methods;
+
 use proptest::prelude::*;
-use saltus::{
-    About, Automaton, Dop853, Edges, ErrorKind, FailedOf, Hybrid, Refusal, Rodas5P, RunOf, Simulation, Solution, Stop,
-    Tsit5,
-};
+use saltus::{About, Automaton, Edges, ErrorKind, FailedOf, Hybrid, Refusal, RunOf, Simulation, Solution, Stop};
+
+use methods::methods;
 
 type Ball<'a> = Hybrid<'a, [f64; 2]>;
 
@@ -22,12 +23,8 @@ fn ball<'a>(stiffness: f64, power: f64, cut_off: bool) -> Ball<'a> {
 }
 
 fn run<'a>(ball: &'a Ball<'a>, method: usize, tolerance: f64) -> Result<RunOf<Ball<'a>>, Box<FailedOf<Ball<'a>>>> {
-    let simulation = Simulation::of(ball).tolerance(tolerance);
-    match method {
-        0 => simulation.stepper(Tsit5).run("flight", [1.0, 0.0], 0.0..4.0),
-        1 => simulation.stepper(Dop853).run("flight", [1.0, 0.0], 0.0..4.0),
-        _ => simulation.stepper(Rodas5P).run("flight", [1.0, 0.0], 0.0..4.0),
-    }
+    let simulation = Simulation::of(ball).stepper(methods()[method]).tolerance(tolerance);
+    simulation.run("flight", [1.0, 0.0], 0.0..4.0)
 }
 
 proptest! {

@@ -3,14 +3,18 @@
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
+mod methods;
+
 use std::time::Duration;
 
 use proptest::prelude::*;
 use saltus::step::Stepper;
 use saltus::{
-    Automaton, Clock, Dop853, Edges, ErrorKind, Filippov, Hybrid, Passage, Polynomial, Refusal, Rodas5P, Side, Sides,
-    Simulation, Solution, Stats, Stop, Tsit5,
+    Automaton, Clock, Edges, ErrorKind, Filippov, Hybrid, Passage, Polynomial, Refusal, Side, Sides, Simulation,
+    Solution, Stats, Stop,
 };
+
+use methods::methods;
 
 /// Spans from a moment to for ever; at the end of none is a jump due, which rounding would decide.
 const SPANS: [f64; 6] = [1.5, 1e6, 1e16, 1e100, f64::MAX, f64::INFINITY];
@@ -100,24 +104,10 @@ fn limited<'a, A: Automaton, M: Stepper>(simulation: Simulation<'a, A, M>, most:
 }
 
 fn ending(kind: Endless, method: usize, most: Most, longest: Option<f64>, end: f64) -> (Stop<()>, Stats) {
-    fn of<M: Stepper>(
-        simulation: Simulation<'_, Endless, M>,
-        most: Most,
-        longest: Option<f64>,
-        end: f64,
-    ) -> (Stop<()>, Stats) {
-        let simulation = limited(simulation, most);
-        let simulation = longest.map_or(simulation, |longest| simulation.longest_step(longest));
-        let ending = simulation.drive((), [0.0, 0.5], 0.0..end, &mut ()).unwrap();
-        (ending.stop, ending.stats)
-    }
-    let simulation = Simulation::of(&kind);
-    match method {
-        0 => of(simulation.stepper(Tsit5), most, longest, end),
-        1 => of(simulation.stepper(Dop853), most, longest, end),
-        2 => of(simulation.stepper(Rodas5P), most, longest, end),
-        _ => of(simulation, most, longest, end),
-    }
+    let simulation = limited(Simulation::of(&kind).stepper(methods()[method]), most);
+    let simulation = longest.map_or(simulation, |longest| simulation.longest_step(longest));
+    let ending = simulation.drive((), [0.0, 0.5], 0.0..end, &mut ()).unwrap();
+    (ending.stop, ending.stats)
 }
 
 proptest! {

@@ -2,12 +2,16 @@
 
 #![allow(clippy::unwrap_used)] // a test that cannot run should fail
 
+mod methods;
+
 use std::f64::consts::TAU;
 
 use nalgebra::{Vector2, vector};
 use proptest::prelude::*;
 use saltus::cross::Doubt;
-use saltus::{Certificate, Dop853, Entry, Filippov, Hybrid, Rodas5P, Side, Sides, Simulation, Tsit5};
+use saltus::{Certificate, Entry, Filippov, Hybrid, Side, Sides, Simulation};
+
+use methods::methods;
 
 /// How often a guard falls that turns `miss` above zero (below, if negative) three times, at x = -1
 /// of an oscillator, in three forms; and how often that is doubted.
@@ -38,13 +42,9 @@ fn falls(
         oscillator = oscillator.affine();
     }
     let mut certificate = Certificate::new();
-    let simulation = Simulation::of(&oscillator).tolerance(tolerance);
+    let simulation = Simulation::of(&oscillator).stepper(methods()[method]).tolerance(tolerance);
     let (x, span) = ([phase.cos(), -phase.sin()], 0.0..3.0 * TAU / rate);
-    let end = match method {
-        0 => simulation.stepper(Tsit5).drive("swing", x, span, &mut certificate),
-        1 => simulation.stepper(Dop853).drive("swing", x, span, &mut certificate),
-        _ => simulation.stepper(Rodas5P).drive("swing", x, span, &mut certificate),
-    };
+    let end = simulation.drive("swing", x, span, &mut certificate);
     let doubts = certificate.doubts();
     // Which of the others it is, rounding decides.
     let far = |doubt: Doubt| matches!(doubt, Doubt::Unresolved | Doubt::Missed);
@@ -59,14 +59,8 @@ fn slow_falls(method: usize, tolerance: f64, slope: f64, (rate, fall): (f64, f64
         .mode("run", move |t, _: &Vector2<f64>| vector![rate * (rate * t).cos(), 0.0])
         .edge("run", "run", move |t, x| slope * (fall - t) + (x[0] - (rate * t).sin()), |_t, x| x + Vector2::y())
         .entry(Entry::Wait);
-    let simulation = Simulation::of(&wave).tolerance(tolerance).most_jumps(300);
-    let (start, span) = (Vector2::zeros(), 0.0..10.0);
-    let run = match method {
-        0 => simulation.run("run", start, span),
-        1 => simulation.stepper(Tsit5).run("run", start, span),
-        _ => simulation.stepper(Dop853).run("run", start, span),
-    }
-    .unwrap();
+    let simulation = Simulation::of(&wave).stepper(methods()[method]).tolerance(tolerance).most_jumps(300);
+    let run = simulation.run("run", Vector2::zeros(), 0.0..10.0).unwrap();
     // What the tolerance allows in x, |x| ≤ 1, after so many steps.
     let allowed = 4.0 * run.end.stats.steps as f64 * 2.0 * tolerance;
     let missed = run.end.jumps == 0 && slope * (10.0 - fall) <= allowed;
@@ -80,7 +74,7 @@ proptest! {
     /// in doubt.
     #[test]
     fn a_fall_slower_than_its_error_is_taken_once_or_doubted(
-        method in 0..3_usize,
+        method in 0..4_usize,
         digits in 3.0..14.0_f64,
         share in -1.0..9.0_f64,
         rate in 0.5..10.0_f64,
@@ -94,7 +88,7 @@ proptest! {
     /// What the error of the steps decides is doubted, and nothing else is.
     #[test]
     fn what_the_error_of_a_step_decides_is_doubted(
-        method in 0..3_usize,
+        method in 0..4_usize,
         digits in 3.0..12.0_f64,
         form in 0..3_usize,
         (affine, above) in any::<(bool, bool)>(),
@@ -142,17 +136,12 @@ proptest! {
     /// A slide is left tangentially, from zero: that start is no least value in doubt, at any
     /// tolerance.
     #[test]
-    fn a_slide_is_left_without_a_doubt(strength in 1.05..4.0_f64, phase in 0.0..TAU, decades in 6..13_i32, method in 0..3_u32) {
+    fn a_slide_is_left_without_a_doubt(strength in 1.05..4.0_f64, phase in 0.0..TAU, decades in 6..13_i32, method in 0..4_usize) {
         let push = move |t: f64| strength * (t + phase).sin();
         let relay = Sides::new(move |t, _: &f64| push(t) - 1.0, move |t, _| push(t) + 1.0, |_, x| *x, |_, _| 1.0);
         let relay = Filippov::of(relay.affine());
-        let simulation = Simulation::of(&relay).tolerance(10.0_f64.powi(-decades));
-        let run = match method {
-            0 => simulation.stepper(Tsit5).run(Side::Above, 1.0, 0.0..30.0),
-            1 => simulation.stepper(Dop853).run(Side::Above, 1.0, 0.0..30.0),
-            _ => simulation.stepper(Rodas5P).run(Side::Above, 1.0, 0.0..30.0),
-        };
-        let run = run.unwrap();
+        let simulation = Simulation::of(&relay).stepper(methods()[method]).tolerance(10.0_f64.powi(-decades));
+        let run = simulation.run(Side::Above, 1.0, 0.0..30.0).unwrap();
         prop_assert!(run.trajectory.jumps().len() > 6);
         let left = |t| run.trajectory.jumps().iter().any(|jump| jump.from == Side::Sliding && jump.time == t);
         prop_assert!(!run.trajectory.doubts().iter().any(|doubt| left(doubt.start)), "{:?}", run.trajectory.doubts());

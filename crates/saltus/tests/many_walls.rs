@@ -2,9 +2,12 @@
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
+mod methods;
+
 use proptest::prelude::*;
-use saltus::step::Stepper;
-use saltus::{About, Auto, Automaton, Dop853, Edges, Refusal, Rodas5P, Simulation, Tsit5};
+use saltus::{About, Auto, Automaton, Edges, Refusal, Simulation};
+
+use methods::methods;
 
 /// The most balls side by side.
 const MOST: usize = 24;
@@ -43,7 +46,7 @@ impl Automaton for Court {
 }
 
 /// The times at which the balls come down, by one method.
-fn landings(court: &Court, start: Balls, stepper: impl Stepper) -> Vec<(usize, f64)> {
+fn landings(court: &Court, start: Balls, stepper: Auto) -> Vec<(usize, f64)> {
     let run = Simulation::of(court).stepper(stepper).tolerance(1e-9).run((), start, 0.0..9.0).unwrap();
     run.trajectory.jumps().iter().map(|jump| (jump.edge().unwrap(), jump.t())).collect()
 }
@@ -64,12 +67,7 @@ proptest! {
         for (place, (floor, off, speed)) in start.chunks_mut(2).zip(&balls) {
             place.copy_from_slice(&[floor * (1.0 + f64::from(*off) * f64::EPSILON), *speed]);
         }
-        let mut found = match method {
-            0 => landings(&court, start, Tsit5),
-            1 => landings(&court, start, Dop853),
-            2 => landings(&court, start, Auto::default()),
-            _ => landings(&court, start, Rodas5P),
-        };
+        let mut found = landings(&court, start, methods()[method]);
         found.sort_by_key(|(ball, _)| *ball);
         prop_assert_eq!(found.len(), balls.len());
         for ((ball, t), (k, (.., speed))) in found.iter().zip(balls.iter().enumerate()) {

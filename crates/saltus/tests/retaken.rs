@@ -3,11 +3,14 @@
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
+mod methods;
+
 use std::f64::consts::PI;
 
 use proptest::prelude::*;
-use saltus::step::Stepper;
-use saltus::{Coords, Dop853, Entry, ErrorKind, Hybrid, Polynomial, Rodas5P, Simulation, State, Stop, Tsit5};
+use saltus::{Auto, Coords, Entry, ErrorKind, Hybrid, Polynomial, Simulation, State, Stop};
+
+use methods::methods;
 
 type Counter<'a> = Hybrid<'a, f64>;
 
@@ -16,7 +19,7 @@ fn counter<'a>() -> Counter<'a> {
 }
 
 /// The edges taken, in order.
-fn taken(counter: &Counter, stepper: impl Stepper) -> Vec<usize> {
+fn taken(counter: &Counter, stepper: Auto) -> Vec<usize> {
     let run = Simulation::of(counter).stepper(stepper).run("run", 0.0, 0.0..1.0).unwrap();
     assert_eq!(run.end.stop, Stop::Time);
     run.trajectory.jumps().iter().filter_map(saltus::Jump::edge).map(|edge| edge.place).collect()
@@ -106,7 +109,7 @@ proptest! {
             .edge("run", "run", move |_t, x| b - x, |_t, x| *x)
             .entry(Entry::Wait);
         for counter in [of_time, of_state] {
-            for places in [taken(&counter, Tsit5), taken(&counter, Dop853), taken(&counter, Rodas5P)] {
+            for places in methods().map(|method| taken(&counter, method)) {
                 prop_assert!(places == order || apart < 2 && places == [0, 1], "{places:?} instead of {order:?}");
             }
         }
@@ -126,7 +129,7 @@ proptest! {
             let guard = move |t: f64, x: &f64| slope * (at - if of_state { *x } else { t });
             counter = counter.edge("run", "run", guard, |_t, x| *x).entry(Entry::Wait);
         }
-        for mut places in [taken(&counter, Tsit5), taken(&counter, Dop853), taken(&counter, Rodas5P)] {
+        for mut places in methods().map(|method| taken(&counter, method)) {
             places.sort_unstable();
             prop_assert_eq!(places, (0..falls.len()).collect::<Vec<_>>());
         }
@@ -139,7 +142,7 @@ proptest! {
     #[test]
     fn a_guard_that_falls_on_is_refused_wherever_the_span_ends(
         phase in -1.4..1.4_f64, turns in 0.3..20.0_f64, digits in 5.5..13.0_f64, power in -6..6_i32, affine: bool, waits: bool,
-        method in 0..3_usize,
+        method in 0..4_usize,
     ) {
         let rate = 10_f64.powi(power);
         let model = Hybrid::new()
@@ -148,12 +151,8 @@ proptest! {
         let model = if affine { model.affine() } else { model };
         let model = if waits { model.entry(Entry::Wait) } else { model };
         let (start, end) = ([phase.cos(), -phase.sin()], turns * std::f64::consts::TAU / rate);
-        let simulation = Simulation::of(&model).tolerance(10_f64.powf(-digits));
-        let run = match method {
-            0 => simulation.run("swing", start, 0.0..end).map(|run| run.end.jumps),
-            1 => simulation.stepper(Rodas5P).run("swing", start, 0.0..end).map(|run| run.end.jumps),
-            _ => simulation.stepper(Tsit5).run("swing", start, 0.0..end).map(|run| run.end.jumps),
-        };
+        let simulation = Simulation::of(&model).stepper(methods()[method]).tolerance(10_f64.powf(-digits));
+        let run = simulation.run("swing", start, 0.0..end).map(|run| run.end.jumps);
         // At angles of 1/4, 5/4, 9/4 turns; away from where the span ends at one.
         let passed = turns - (std::f64::consts::FRAC_PI_2 - phase) / std::f64::consts::TAU;
         prop_assume!((passed - passed.round()).abs() > 1e-2);
@@ -169,19 +168,14 @@ proptest! {
     /// A guard that leaps has no root that could be spent: it is taken again where it leaps again.
     #[test]
     fn a_guard_that_leaps_is_taken_each_time(
-        back in 0.1..3.0_f64, inside in -3..3_i32, outside in -3..3_i32, waits: bool, method in 0..3_usize,
+        back in 0.1..3.0_f64, inside in -3..3_i32, outside in -3..3_i32, waits: bool, method in 0..4_usize,
     ) {
         let (inside, outside) = (10_f64.powi(inside), -(10_f64.powi(outside)));
         let model = Hybrid::new()
             .mode("rise", |_t, _x: &f64| 1.0)
             .edge("rise", "rise", move |_t, x| if *x < 2.0 { inside } else { outside }, move |_t, _x| 2.0 - back);
         let model = if waits { model.entry(Entry::Wait) } else { model };
-        let simulation = Simulation::of(&model);
-        let run = match method {
-            0 => simulation.run("rise", 2.0 - back, 0.0..9.5 * back),
-            1 => simulation.stepper(Rodas5P).run("rise", 2.0 - back, 0.0..9.5 * back),
-            _ => simulation.stepper(Tsit5).run("rise", 2.0 - back, 0.0..9.5 * back),
-        };
+        let run = Simulation::of(&model).stepper(methods()[method]).run("rise", 2.0 - back, 0.0..9.5 * back);
         prop_assert_eq!(run.map(|run| run.end.jumps).map_err(|failed| failed.to_string()), Ok(9));
     }
 }

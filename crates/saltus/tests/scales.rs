@@ -1,14 +1,18 @@
 //! What a motion's own scales are changes nothing: long and short times, far origins, flat and
 //! steep guards, small coordinates beside large ones.
 
+mod methods;
+
 use std::f64::consts::PI;
 use std::fmt;
 
 use proptest::prelude::*;
 use saltus::{
-    Automaton, Dop853, Edge, Edges, Entry, ErrorKind, Failed, Filippov, Hybrid, Limit, Refusal, Rodas5P, Run, Side,
-    Sides, Simulation, Stop, Tsit5,
+    Automaton, Edge, Edges, Entry, ErrorKind, Failed, Filippov, Hybrid, Limit, Refusal, Run, Side, Sides, Simulation,
+    Stop,
 };
+
+use methods::methods;
 
 const GRAVITY: f64 = 9.81;
 /// Bounces lower than so many roundings of their height are hidden by these: what `FAR` times
@@ -24,18 +28,6 @@ fn times<M: Copy + PartialEq + fmt::Debug, E: Copy + PartialEq + fmt::Debug, S: 
     let run = run.map_err(|failed| failed.error.kind())?;
     assert!(run.trajectory.doubts().is_empty(), "{:?}", run.trajectory.doubts().first());
     Ok(run.trajectory.jumps().iter().map(saltus::Jump::t).collect())
-}
-
-/// The run of a model by the method of this number.
-macro_rules! by {
-    ($method:expr, $simulation:expr, $mode:expr, $x:expr, $span:expr) => {
-        match $method {
-            0 => times($simulation.stepper(Tsit5).run($mode, $x, $span)),
-            1 => times($simulation.stepper(Dop853).run($mode, $x, $span)),
-            2 => times($simulation.stepper(Rodas5P).run($mode, $x, $span)),
-            _ => times($simulation.run($mode, $x, $span)),
-        }
-    };
 }
 
 proptest! {
@@ -68,7 +60,7 @@ proptest! {
                 .edge("air", "air", |_t, x| x[0], move |_t, x| [0.0, -(0.3 + 0.6 * phase) * x[1]])
                 .edge("air", "air", |_t, x| 4.0 - x[0], |_t, x| [x[0], -0.5 * x[1]]);
             let x = [[1.0, 4.0 * phase], [0.0, 1.0 + phase], [1.0, 0.0]][start];
-            by!(method, Simulation::of(&ball), "air", x, 0.0..0.9 * unit)
+            times(Simulation::of(&ball).stepper(methods()[method]).run("air", x, 0.0..0.9 * unit))
                 .map(|times| times.iter().map(|t| t / unit).collect::<Vec<_>>())
         };
         let (one, other) = (jumps(1.0).unwrap(), jumps(2_f64.powi(power)).unwrap());
@@ -83,13 +75,13 @@ proptest! {
         let ball = Hybrid::new()
             .mode("air", move |_t, x: &[f64; 2]| [x[1], -GRAVITY * slow * slow - 0.1 * x[1] * x[1].abs()])
             .edge("air", "air", |_t, x| x[0], move |_t, x| [0.0, -e * x[1]]);
-        let simulation = Simulation::of(&ball).stepper(Rodas5P);
+        let simulation = Simulation::of(&ball).stepper(methods()[2]);
         let jumps = |power: i32| {
             let slow = 2_f64.powi(-power);
             let ball = Hybrid::new()
                 .mode("air", move |_t, x: &[f64; 2]| [x[1], -GRAVITY * slow * slow - 0.1 * x[1] * x[1].abs()])
                 .edge("air", "air", |_t, x| x[0], move |_t, x| [0.0, -e * x[1]]);
-            let run = Simulation::of(&ball).stepper(Tsit5).run("air", [0.0, 3.5 * slow], 0.0..0.9 / slow).unwrap();
+            let run = Simulation::of(&ball).stepper(methods()[0]).run("air", [0.0, 3.5 * slow], 0.0..0.9 / slow).unwrap();
             run.trajectory.jumps().iter().map(|jump| slow * jump.t()).collect::<Vec<_>>()
         };
         let run = simulation.run("air", [0.0, 3.5 * slow], 0.0..0.9 / slow).unwrap();
@@ -162,7 +154,7 @@ proptest! {
         let tolerance = 10_f64.powf(-digits);
         let simulation = Simulation::of(&relaxed).tolerance(tolerance).most_steps(100_000);
         let span = 0.0..8.0 * PI;
-        let run = if auto { simulation.run("on", 1.0, span) } else { simulation.stepper(Rodas5P).run("on", 1.0, span) };
+        let run = simulation.stepper(methods()[if auto { 3 } else { 2 }]).run("on", 1.0, span);
         let run = run.unwrap();
         prop_assume!(run.end.stop == Stop::Time);
         let (down, up) = (level.acos(), 2.0 * PI - (level + 0.1).acos());
@@ -221,7 +213,7 @@ proptest! {
         let two = Two { floor, e };
         let lands = (2.0 * above / GRAVITY).sqrt();
         let x = [floor + above, 0.0, floor + 0.05, 0.0];
-        let run = by!(method, Simulation::of(&two), false, x, 0.0..lands + 0.1).unwrap();
+        let run = times(Simulation::of(&two).stepper(methods()[method]).run(false, x, 0.0..lands + 0.1)).unwrap();
         let low = (0.1 / GRAVITY).sqrt() * (1.0 + e) / (1.0 - e);
         prop_assume!(low < 0.9 * lands);
         let landed = run.iter().copied().find(|t| (t - lands).abs() < 0.05).unwrap();
@@ -243,7 +235,7 @@ proptest! {
         let start = if at_zero { -3.0 * turn } else { 10_f64.powf(origin) * if sign { 1.0 } else { -1.0 } };
         let end = if at_zero { 0.0 } else { start + 3.0 * turn };
         let spacing = start.abs().max(end.abs()).max(1.0) * f64::EPSILON;
-        let jumps = by!(method, Simulation::of(&ramp), "up", 0.0, start..end + hair * spacing).unwrap();
+        let jumps = times(Simulation::of(&ramp).stepper(methods()[method]).run("up", 0.0, start..end + hair * spacing)).unwrap();
         prop_assert_eq!(jumps.len(), 3, "{:?}", jumps);
     }
 }

@@ -1,9 +1,13 @@
 //! A flow that runs along a guard's surface: an edge whose guard stays zero has not fallen, however
 //! the steps drift, and falls where the flow carries it down.
 
+mod methods;
+
 use proptest::prelude::*;
 use saltus::nalgebra::{self, Vector2, Vector3, vector};
-use saltus::{Dop853, FailedOf, Hybrid, Rodas5P, RunOf, Simulation, State, Stop, Tsit5};
+use saltus::{FailedOf, Hybrid, RunOf, Simulation, State, Stop};
+
+use methods::methods;
 
 /// Runs by one of three methods.
 fn run<'a, X: State>(
@@ -13,13 +17,9 @@ fn run<'a, X: State>(
     start: (&'static str, X),
     end: f64,
 ) -> Result<RunOf<Hybrid<'a, X>>, Box<FailedOf<Hybrid<'a, X>>>> {
-    let simulation = Simulation::of(model).tolerance(tolerance).most_steps(100_000);
+    let simulation = Simulation::of(model).stepper(methods()[method]).tolerance(tolerance).most_steps(100_000);
     let (mode, x) = start;
-    match method {
-        0 => simulation.stepper(Tsit5).run(mode, x, 0.0..end),
-        1 => simulation.stepper(Dop853).run(mode, x, 0.0..end),
-        _ => simulation.stepper(Rodas5P).run(mode, x, 0.0..end),
-    }
+    simulation.run(mode, x, 0.0..end)
 }
 
 /// How late a fall as (t - t₀)ᵐ⁺¹ may be found at most, where its rate (t - t₀)ᵐ is beyond the

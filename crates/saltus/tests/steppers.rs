@@ -6,9 +6,13 @@
 
 #![allow(clippy::unwrap_used)] // in what the tests share
 
+mod methods;
+
 use saltus::nalgebra::{Vector2, Vector3, Vector4, vector};
 use saltus::step::{Dop853, Rodas5P, Stepper, Trial, Tsit5};
-use saltus::{Coords, Entry, Hybrid, RunOf, Simulation, State, Stop};
+use saltus::{Auto, Coords, Entry, Hybrid, RunOf, Simulation, State, Stop};
+
+use methods::methods;
 
 /// Runs the one mode "flow" of `system` with equal relative and absolute tolerance.
 fn run<'b, S: State>(
@@ -145,6 +149,28 @@ fn an_explicit_stepper_pays_for_stiffness() {
     );
 }
 
+/// A method that is chosen as a program runs takes its very steps: at either side of the tolerance
+/// at which [`Auto`] goes over to another, and where the flow is so stiff that it would leave it.
+#[test]
+fn a_method_by_name_is_that_method() {
+    fn same(method: impl Stepper + Into<Auto>) {
+        let system =
+            Hybrid::new().mode("flow", |_t, x: &Vector2<f64>| vector![x[1], 1e3 * (1.0 - x[0] * x[0]) * x[1] - x[0]]);
+        for tolerance in [1e-5, 1e-9] {
+            let (own, named, free) = (
+                run(&system, method, tolerance, vector![2.0, 0.0], 1.0),
+                run(&system, method.into(), tolerance, vector![2.0, 0.0], 1.0),
+                run(&system, Auto::new(), tolerance, vector![2.0, 0.0], 1.0),
+            );
+            assert_eq!((own.end.state, own.end.stats), (named.end.state, named.end.stats));
+            assert!(free.end.stats.stiff > 0 && free.end.stats != named.end.stats);
+        }
+    }
+    same(Tsit5);
+    same(Dop853);
+    same(Rodas5P);
+}
+
 // --- what every stepper owes ---
 
 /// An oscillator that carries a clock as its third coordinate. When it passes the middle it is held
@@ -159,7 +185,7 @@ fn two_dimensions() -> Hybrid<'static, Coords<3>> {
 
 #[test]
 fn modes_of_different_dimension_suit_every_stepper() {
-    fn check(stepper: impl Stepper) {
+    fn check(stepper: Auto) {
         let system = two_dimensions();
         let run =
             Simulation::of(&system).stepper(stepper).tolerance(1e-9).run("free", [1.0, 0.0, 0.0].into(), 0.0..6.0);
@@ -176,9 +202,7 @@ fn modes_of_different_dimension_suit_every_stepper() {
         assert_eq!(run.end.state.len(), 3);
         assert!((run.end.state[2] - (6.0 - 2.0 + 0.5)).abs() < 1e-8, "{:?}", run.end.state);
     }
-    check(Tsit5);
-    check(Dop853);
-    check(Rodas5P);
+    methods().into_iter().for_each(check);
 }
 
 /// Beside the steps on the way a crossing costs one real step to it, with its dense output (15
@@ -200,7 +224,7 @@ fn a_crossing_costs_one_more_step() {
 fn a_ball_comes_to_rest_on_every_stepper() {
     // The last bounces last a billionth of a step, and still begin with the speed of the reset. The
     // air resists with the speed, so the flow is linear and not polynomial in time.
-    fn check(stepper: impl Stepper, drag: f64, limits: [f64; 3]) {
+    fn check(stepper: Auto, drag: f64, limits: [f64; 3]) {
         for (kept, limit) in [0.5, 0.7, 0.9].into_iter().zip(limits) {
             let ball = Hybrid::new()
                 .mode("flight", |_t, x: &Vector2<f64>| vector![x[1], -9.8 - drag * x[1]])
@@ -216,9 +240,7 @@ fn a_ball_comes_to_rest_on_every_stepper() {
     let free = [0.5, 0.7, 0.9].map(|kept| (2.0_f64 / 9.8).sqrt() * (1.0 + kept) / (1.0 - kept));
     let resisted = [1.290_252_395_190, 2.297_549_170_119, 6.212_030_408_788]; // by Dop853 at 1e-12 and 1e-14 alike
     for (drag, limits) in [(0.0, free), (0.3, resisted)] {
-        check(Tsit5, drag, limits);
-        check(Dop853, drag, limits);
-        check(Rodas5P, drag, limits);
+        methods().into_iter().for_each(|method| check(method, drag, limits));
     }
 }
 

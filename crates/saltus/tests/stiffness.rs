@@ -2,8 +2,11 @@
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
-use saltus::step::Stepper;
-use saltus::{Dop853, Hybrid, Rodas5P, RunOf, Simulation, State, Stop, Tsit5};
+mod methods;
+
+use saltus::{Hybrid, RunOf, Simulation, State, Stop};
+
+use methods::methods;
 
 /// A model, its start and its end.
 struct Case<S> {
@@ -14,13 +17,8 @@ struct Case<S> {
 }
 
 /// By a stepper chosen by hand, which gives up after so many evaluations.
-fn by_hand<S: State>(
-    case: &Case<S>,
-    stepper: impl Stepper,
-    tolerance: f64,
-    most: u64,
-) -> Option<RunOf<Hybrid<'static, S>>> {
-    let simulation = Simulation::of(&case.model).stepper(stepper).tolerance(tolerance).most_evaluations(most);
+fn by_hand<S: State>(case: &Case<S>, method: usize, tolerance: f64, most: u64) -> Option<RunOf<Hybrid<'static, S>>> {
+    let simulation = Simulation::of(&case.model).stepper(methods()[method]).tolerance(tolerance).most_evaluations(most);
     let run = simulation.run("run", case.start, 0.0..case.end).ok()?;
     (run.end.stop == Stop::Time).then_some(run)
 }
@@ -36,11 +34,7 @@ fn ratio<S: State>(case: &Case<S>, tolerance: f64) -> f64 {
     let auto = auto.run("run", case.start, 0.0..case.end).unwrap().end;
     assert_eq!(auto.stop, Stop::Time, "{}: {:?}", case.name, auto.stats);
     let most = 20 * auto.stats.flows;
-    let runs = [
-        by_hand(case, Tsit5, tolerance, most),
-        by_hand(case, Dop853, tolerance, most),
-        by_hand(case, Rodas5P, tolerance, most),
-    ];
+    let runs = [0, 1, 2].map(|method| by_hand(case, method, tolerance, most));
     let best = runs.iter().flatten().map(|run| run.end.stats.flows).min().unwrap();
     let flows = auto.stats.flows as f64 - if auto.stats.stiff > 0 { NOTICED } else { 0.0 };
     println!("{:<28} {tolerance:e}: {:.2}, {:?}", case.name, auto.stats.flows as f64 / best as f64, auto.stats);
@@ -135,12 +129,7 @@ fn pendulum() -> Case<[f64; 2]> {
 fn overhead<S: State>(case: &Case<S>, tolerance: f64) -> f64 {
     let auto = Simulation::of(&case.model).tolerance(tolerance).run("run", case.start, 0.0..case.end).unwrap();
     assert_eq!(auto.end.stats.stiff, 0, "{} at {tolerance:e}: {:?}", case.name, auto.end.stats);
-    let same = if tolerance < saltus::Auto::TIGHT {
-        by_hand(case, Dop853, tolerance, u64::MAX)
-    } else {
-        by_hand(case, Tsit5, tolerance, u64::MAX)
-    };
-    let same = same.unwrap();
+    let same = by_hand(case, usize::from(tolerance < saltus::Auto::TIGHT), tolerance, u64::MAX).unwrap();
     assert_eq!(auto.end.state.len(), same.end.state.len());
     assert!((0..auto.end.state.len()).all(|i| auto.end.state.get(i) == same.end.state.get(i)), "{}", case.name);
     auto.end.stats.flows as f64 / same.end.stats.flows as f64 - 1.0
@@ -176,7 +165,7 @@ fn there_and_back() {
         assert!(stats.stiff > 10 && 3 * stats.stiff < 2 * stats.steps, "{stats:?}");
         assert!(stats.flows < 20_000, "{stats:?}");
         let exact =
-            Simulation::of(&model).stepper(Rodas5P).tolerance(1e-11).run("run", [0.0; 2], 0.0..12.0).unwrap().end;
+            Simulation::of(&model).stepper(methods()[2]).tolerance(1e-11).run("run", [0.0; 2], 0.0..12.0).unwrap().end;
         assert!((whole.state[0] - exact.state[0]).abs() < 100.0 * tolerance, "{:?} {:?}", whole.state, exact.state);
         let mut course = simulation.start("run", [0.0; 2], 0.0..12.0).unwrap();
         while course.advance(&mut ()).unwrap().is_none() {

@@ -2,11 +2,12 @@
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
+mod methods;
+
 use proptest::prelude::*;
-use saltus::{
-    Clock, Dop853, Edge, Entry, ErrorKind, Filippov, Hybrid, Reversed, Rodas5P, RunOf, Side, Sides, Signal, Simulation,
-    Tsit5,
-};
+use saltus::{Clock, Edge, Entry, ErrorKind, Filippov, Hybrid, Reversed, RunOf, Side, Sides, Signal, Simulation};
+
+use methods::methods;
 
 /// An input that is constant between its knots.
 #[derive(Clone, Debug)]
@@ -49,14 +50,7 @@ fn integrator(input: &Held) -> Integrator<'_> {
 }
 
 fn run<'a>(model: &Integrator<'a>, stepper: usize, end: f64) -> RunOf<Integrator<'a>> {
-    let simulation = Simulation::of(model);
-    match stepper {
-        0 => simulation.run("run", [0.0; 2], 0.0..end),
-        1 => simulation.stepper(Tsit5).run("run", [0.0; 2], 0.0..end),
-        2 => simulation.stepper(Dop853).run("run", [0.0; 2], 0.0..end),
-        _ => simulation.stepper(Rodas5P).run("run", [0.0; 2], 0.0..end),
-    }
-    .unwrap()
+    Simulation::of(model).stepper(methods()[stepper]).run("run", [0.0; 2], 0.0..end).unwrap()
 }
 
 proptest! {
@@ -300,14 +294,11 @@ proptest! {
         prop_assume!(start < end);
         let model = comparators(&input, &levels, clocked);
         let simulation = Simulation::of(&model);
-        let run = match stepper {
-            0 => simulation.stepped().run("run", [0.0; 2], start..end),
-            1 => simulation.stepper(Tsit5).stepped().run("run", [0.0; 2], start..end),
-            2 => simulation.stepper(Dop853).stepped().run("run", [0.0; 2], start..end),
-            3 => simulation.stepper(Rodas5P).stepped().run("run", [0.0; 2], start..end),
-            _ => simulation.run("run", [0.0; 2], start..end),
+        let simulation = match methods().get(stepper) {
+            Some(method) => simulation.stepper(*method).stepped(),
+            None => simulation,
         };
-        let run = run.unwrap();
+        let run = simulation.run("run", [0.0; 2], start..end).unwrap();
         let mut expected = Vec::new();
         for (place, &knot) in input.knots.iter().enumerate().filter(|(_, knot)| start < **knot && **knot <= end) {
             let falls = |&(_, &level): &(usize, &f64)| {
@@ -337,15 +328,8 @@ proptest! {
             .edge("low", "high", |t, _x| -0.5 - input.at(t), |_t, x| *x)
             .stops("high", Clock::at(input.knots.clone()))
             .stops("low", Clock::at(input.knots.clone()));
-        let simulation = Simulation::of(&model);
         let start = if high { "high" } else { "low" };
-        let run = match stepper {
-            0 => simulation.run(start, 0.0, 0.0..12.0),
-            1 => simulation.stepper(Tsit5).run(start, 0.0, 0.0..12.0),
-            2 => simulation.stepper(Dop853).run(start, 0.0, 0.0..12.0),
-            _ => simulation.stepper(Rodas5P).run(start, 0.0, 0.0..12.0),
-        };
-        let run = run.unwrap();
+        let run = Simulation::of(&model).stepper(methods()[stepper]).run(start, 0.0, 0.0..12.0).unwrap();
         let changes = (0..input.knots.len()).filter(|&k| (input.rates[k] >= 0.0) != (input.rates[k + 1] >= 0.0));
         let expected: Vec<_> = changes.map(|k| input.knots[k]).collect();
         let found: Vec<_> = run.trajectory.jumps().iter().map(saltus::Jump::t).collect();
@@ -393,13 +377,7 @@ proptest! {
         let belt = Sides::new(|_, _: &f64| -grip, |_, _| grip, |t, v| v - input.at(t), |_, _| 1.0);
         let belt = Filippov::of(belt.stops(Clock::at(input.knots.clone())));
         let start = input.at(0.0);
-        let simulation = Simulation::of(&belt);
-        let run = match stepper {
-            0 => simulation.run(Side::Sliding, start, 0.0..11.0),
-            1 => simulation.stepper(Tsit5).run(Side::Sliding, start, 0.0..11.0),
-            2 => simulation.stepper(Dop853).run(Side::Sliding, start, 0.0..11.0),
-            _ => simulation.stepper(Rodas5P).run(Side::Sliding, start, 0.0..11.0),
-        };
+        let run = Simulation::of(&belt).stepper(methods()[stepper]).run(Side::Sliding, start, 0.0..11.0);
         let run = run.unwrap().complete().unwrap();
         // Towards the speed of each stretch, and no further.
         let (mut v, mut t) = (start, 0.0);

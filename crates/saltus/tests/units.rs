@@ -1,8 +1,12 @@
 //! Units change nothing: what rounding leaves of a guard is the same part of the motion in each.
 
+mod methods;
+
 use proptest::prelude::*;
 use saltus::nalgebra::{self, Vector2, vector};
-use saltus::{Dop853, Edge, ErrorKind, Failed, Filippov, Hybrid, Rodas5P, Run, Sides, Simulation, Stop, Tsit5};
+use saltus::{Edge, ErrorKind, Failed, Filippov, Hybrid, Run, Sides, Simulation, Stop};
+
+use methods::methods;
 
 /// A ball that falls from one `unit` on a floor, whose reset leaves it `below` the floor by this
 /// part of the fall.
@@ -80,11 +84,7 @@ macro_rules! by_method {
         let (mode, x) = $start;
         let (model, x) = ($model, x * $units.state);
         let run = Simulation::of(&model).most_jumps(200).absolute_tolerance(1e-9 * $units.state);
-        match $method {
-            0 => shown(run.stepper(Tsit5).run(mode, x, 0.0..$end), $units),
-            1 => shown(run.stepper(Dop853).run(mode, x, 0.0..$end), $units),
-            _ => shown(run.stepper(Rodas5P).run(mode, x, 0.0..$end), $units),
-        }
+        shown(run.stepper(methods()[$method]).run(mode, x, 0.0..$end), $units)
     }};
 }
 

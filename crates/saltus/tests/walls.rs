@@ -4,10 +4,13 @@
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
+mod methods;
+
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use saltus::step::Stepper;
-use saltus::{Auto, Dop853, Edge, Entry, ErrorKind, Hybrid, Rodas5P, Simulation, Stop, Tsit5};
+use saltus::{Auto, Edge, Entry, ErrorKind, Hybrid, Simulation, Stop};
+
+use methods::methods;
 
 /// Decades as a factor.
 fn ten(decades: f64) -> f64 {
@@ -39,7 +42,7 @@ impl Put {
     }
 
     /// When the wall is met after the body was put on it.
-    fn met(&self, stepper: impl Stepper, exact: bool) -> Option<f64> {
+    fn met(&self, stepper: Auto, exact: bool) -> Option<f64> {
         let hybrid = self.hybrid(exact);
         let run = Simulation::of(&hybrid).stepper(stepper).most_jumps(2).run(
             "free",
@@ -71,14 +74,8 @@ proptest! {
         };
         // A dip below the rounding of the place is none.
         prop_assume!(pressed || put.rate * put.rate / (2.0 * push) > 1e6 * f64::EPSILON * far);
-        let met = [
-            put.met(Tsit5, false),
-            put.met(Dop853, false),
-            put.met(Rodas5P, false),
-            put.met(Auto::default(), false),
-            put.met(Auto::default(), true),
-        ];
-        for met in met {
+        let exact = put.met(Auto::new(), true);
+        for met in methods().into_iter().map(|method| put.met(method, false)).chain([exact]) {
             // As late as rounding hides a fall without speed.
             let hidden = if pressed { (2.0 * 64.0 * f64::EPSILON * far / push).sqrt() } else { 0.0 };
             prop_assert!(met.is_some_and(|late| late <= 1e-9 * at + hidden), "{met:?}");
@@ -96,7 +93,7 @@ proptest! {
         let put = Put { at, wall: far, rate: ten(rate), push: -ten(push) };
         let back = 2.0 * put.rate / -put.push;
         prop_assume!(back > 1e-5 && back < 5.0 && put.rate * put.rate / -put.push > 1e6 * f64::EPSILON * far);
-        for met in [put.met(Tsit5, false), put.met(Dop853, false), put.met(Rodas5P, false), put.met(Auto::default(), false)] {
+        for met in methods().map(|method| put.met(method, false)) {
             prop_assert!(met.is_some_and(|met| (met / back - 1.0).abs() < 0.5), "{met:?}, not {back}");
         }
     }
@@ -136,11 +133,7 @@ proptest! {
         let stack = stacked(lower, upper, ten(ratio), air);
         let start = [height, 0.0, height, 0.0];
         let run = Simulation::of(&stack).most_jumps(3000);
-        for outcome in [
-            run.stepper(Tsit5).run("fall", start, 0.0..6.0),
-            run.stepper(Dop853).run("fall", start, 0.0..6.0),
-            run.stepper(Rodas5P).run("fall", start, 0.0..6.0),
-        ] {
+        for outcome in methods().map(|method| run.stepper(method).run("fall", start, 0.0..6.0)) {
             match outcome {
                 Ok(run) => {
                     let [x, _, y, _] = run.end.state;
@@ -195,12 +188,7 @@ proptest! {
             .edge_with("run", "run", rises);
         let run = Simulation::of(&ball).tolerance(ten(-digits));
         let (start, span) = ([0.0, speed], 0.0..2.5 * speed / g);
-        let run = match method {
-            0 => run.stepper(Tsit5).run("run", start, span),
-            1 => run.stepper(Dop853).run("run", start, span),
-            2 => run.stepper(Auto::default()).run("run", start, span),
-            _ => run.stepper(Rodas5P).run("run", start, span),
-        };
+        let run = run.stepper(methods()[method]).run("run", start, span);
         let root = (speed * speed - 2.0 * g * height).sqrt();
         let times: Vec<_> = run.unwrap().trajectory.jumps().iter().map(|jump| jump.t()).collect();
         prop_assert_eq!(times.len(), 2, "{:?}", times);

@@ -3,7 +3,6 @@
 use std::ops::{ControlFlow, Range};
 
 use pyo3::prelude::*;
-use saltus::step::Either;
 use saltus::{
     Auto, Automaton, Cause, Dop853, Ending, Error, JumpOf, Lift, Observer, Piece, Rodas5P, Sensitive, Simulation,
     State, Stats, Stop, Tangent, Time, Trajectory, Tsit5, Wrt,
@@ -26,24 +25,22 @@ pub(crate) struct Options {
     most_bytes: usize,
 }
 
-type Method = Either<Auto, Either<Either<Tsit5, Dop853>, Rodas5P>>;
-
 impl Options {
     /// Whether nothing is solved and nothing expanded in series.
     pub(crate) fn is_stepped(&self) -> bool {
         !matches!(self.method.as_str(), "auto" | "series")
     }
 
-    fn stepper(&self) -> Method {
+    fn stepper(&self) -> Auto {
         match self.method.as_str() {
-            "tsit5" => Either::Tight(Either::Loose(Either::Loose(Tsit5))),
-            "dop853" => Either::Tight(Either::Loose(Either::Tight(Dop853))),
-            "rodas5p" => Either::Tight(Either::Tight(Rodas5P)),
-            _ => Either::Loose(Auto::new()),
+            "tsit5" => Tsit5.into(),
+            "dop853" => Dop853.into(),
+            "rodas5p" => Rodas5P.into(),
+            _ => Auto::new(),
         }
     }
 
-    fn of<'a, A: Automaton>(&self, automaton: &'a A) -> Simulation<'a, A, Method> {
+    fn of<'a, A: Automaton>(&self, automaton: &'a A) -> Simulation<'a, A> {
         let simulation = Simulation::of(automaton).stepper(self.stepper()).tolerance(self.rtol);
         let simulation = simulation.most_jumps(self.most_jumps).most_steps(self.most_steps);
         let simulation = match self.atol {

@@ -56,7 +56,7 @@ struct CompliantView {
 }
 
 impl<L: ContactLaw + Send + Sync + 'static> SceneView<Compliant<L>> for CompliantView {
-    type Stepper = super::method::Chosen;
+    type Stepper = saltus::Auto;
 
     fn linear(&self, x: &Vector2<f64>, _: usize) -> Moment {
         let up = |up: f64| Vector3::new(0.0, 0.0, up);

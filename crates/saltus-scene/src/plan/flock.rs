@@ -56,7 +56,7 @@ struct FlockView {
 }
 
 impl SceneView<Model> for FlockView {
-    type Stepper = super::method::Chosen;
+    type Stepper = saltus::Auto;
 
     fn balls(&self) -> usize {
         self.count

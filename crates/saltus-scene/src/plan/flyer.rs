@@ -377,7 +377,7 @@ where
     E: Effect<N, S>,
     G: Grip<N, S>,
 {
-    type Stepper = super::method::Chosen;
+    type Stepper = saltus::Auto;
 
     fn linear(&self, x: &Moving<N, S>, _: usize) -> Moment {
         Moment { position: spread(&x.position), velocity: spread(&x.velocity), spin: x.spin.vector() }

@@ -3,7 +3,7 @@
 
 use std::fmt;
 
-use saltus::step::{Either, Stepper as Step, Trial};
+use saltus::step::{Stepper as Step, Trial};
 use saltus::{Auto, Dop853, Rodas5P, State, Tsit5};
 
 use crate::Stepper;
@@ -58,15 +58,12 @@ impl Method {
     }
 }
 
-/// Any of them: an explicit one, or the stiff one.
-pub(super) type Chosen = Either<Either<Tsit5, Dop853>, Rodas5P>;
-
-impl From<Method> for Chosen {
+impl From<Method> for Auto {
     fn from(method: Method) -> Self {
         match method.0 {
-            Stepper::Tsit5 => Self::Loose(Either::Loose(Tsit5)),
-            Stepper::Dop853 | Stepper::Series => Self::Loose(Either::Tight(Dop853)),
-            Stepper::Rodas5p => Self::Tight(Rodas5P),
+            Stepper::Tsit5 => Tsit5.into(),
+            Stepper::Dop853 | Stepper::Series => Dop853.into(),
+            Stepper::Rodas5p => Rodas5P.into(),
         }
     }
 }

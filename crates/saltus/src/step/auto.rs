@@ -1,4 +1,4 @@
-//! Auto: Tsit5 or Dop853, by the tolerance; Rodas5P where a flow is stiff.
+//! Auto: Tsit5 or Dop853, by the tolerance; Rodas5P where a flow is stiff; or one of them alone.
 
 use super::{Dop853, Either, Rodas5P, Stepper, Trial, Tsit5};
 use crate::state::State;
@@ -19,6 +19,9 @@ use crate::state::State;
 /// stiff, and [`Rodas5P`] goes on; and the other way round. [`Stats::stiff`](crate::Stats::stiff)
 /// counts its steps.
 ///
+/// `Auto::from(Rodas5P)` takes the very steps of that method, whatever the flow: a choice by name
+/// as a program runs, where a model is to be compiled once for all methods.
+///
 /// ```
 /// use saltus::{Hybrid, Simulation};
 /// // A cooling that takes a microsecond follows a heater that takes a second.
@@ -30,8 +33,20 @@ use crate::state::State;
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Auto {
-    tight: bool,
+    choice: Choice,
     method: Method,
+}
+
+/// What is chosen from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum Choice {
+    /// Tsit5, and Rodas5P where the flow is stiff.
+    #[default]
+    Loose,
+    /// Dop853, and Rodas5P where the flow is stiff.
+    Tight,
+    /// The one method.
+    One,
 }
 
 type Method = Either<Either<Tsit5, Dop853>, Rodas5P>;
@@ -43,11 +58,29 @@ impl Auto {
     /// As [`default`](Default::default), where a constant is needed.
     #[must_use]
     pub const fn new() -> Self {
-        Self { tight: false, method: Either::Loose(Either::Loose(Tsit5)) }
+        Self { choice: Choice::Loose, method: Either::Loose(Either::Loose(Tsit5)) }
     }
 
-    const fn explicit(tight: bool) -> Either<Tsit5, Dop853> {
-        if tight { Either::Tight(Dop853) } else { Either::Loose(Tsit5) }
+    const fn one(method: Method) -> Self {
+        Self { choice: Choice::One, method }
+    }
+}
+
+impl From<Tsit5> for Auto {
+    fn from(method: Tsit5) -> Self {
+        Self::one(Either::Loose(Either::Loose(method)))
+    }
+}
+
+impl From<Dop853> for Auto {
+    fn from(method: Dop853) -> Self {
+        Self::one(Either::Loose(Either::Tight(method)))
+    }
+}
+
+impl From<Rodas5P> for Auto {
+    fn from(method: Rodas5P) -> Self {
+        Self::one(Either::Tight(method))
     }
 }
 
@@ -65,16 +98,28 @@ impl Stepper for Auto {
     }
 
     fn for_tolerance(self, relative: f64) -> Self {
-        let tight = relative < Self::TIGHT;
-        Self { tight, method: Either::Loose(Self::explicit(tight)) }
+        match self.choice {
+            Choice::One => self,
+            _ if relative < Self::TIGHT => Self { choice: Choice::Tight, method: Self::from(Dop853).method },
+            _ => Self::new(),
+        }
     }
 
     fn stable_to(&self) -> Option<f64> {
-        Some(if self.tight { DOP853 } else { TSIT5 })
+        match self.choice {
+            Choice::Loose => Some(TSIT5),
+            Choice::Tight => Some(DOP853),
+            Choice::One => None,
+        }
     }
 
     fn adapted(self, stiff: bool) -> Self {
-        let method = if stiff { Either::Tight(Rodas5P) } else { Either::Loose(Self::explicit(self.tight)) };
+        let Self { method, .. } = match self.choice {
+            Choice::One => self,
+            _ if stiff => Self::from(Rodas5P),
+            Choice::Loose => Self::from(Tsit5),
+            Choice::Tight => Self::from(Dop853),
+        };
         Self { method, ..self }
     }
 

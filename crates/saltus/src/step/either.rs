@@ -6,7 +6,8 @@ use crate::state::State;
 /// One of two methods, or what one of them keeps: a choice that is made at run time, where a model
 /// is to be compiled once.
 ///
-/// A step pays a branch and some copies for it. Of methods that count Jacobians, none are counted.
+/// A step pays a branch and some copies for it. The built-in methods are chosen from by
+/// [`Auto::from`](super::Auto).
 ///
 /// ```
 /// use saltus::step::{Either, Stepper};
@@ -139,9 +140,11 @@ impl<L: Stepper, T: Stepper> Stepper for Either<L, T> {
                 Either::Tight(method.dense(flow, t, x, h, Trial { end, slope, stages }))
             }
             _ => {
+                // By this one. It never comes to that, so no method is compiled for each flow.
+                let mut flow: &mut dyn FnMut(f64, &S) -> S = flow;
                 let slope = flow(t, x);
-                let trial = self.trial(flow, t, x, &slope, h); // by this one
-                self.dense(flow, t, x, h, trial.as_ref())
+                let trial = self.trial(&mut flow, t, x, &slope, h);
+                self.dense(&mut flow, t, x, h, trial.as_ref())
             }
         }
     }
