@@ -88,7 +88,8 @@ impl<const N: usize> State for [f64; N] {
     fn get(&self, i: usize) -> f64 {
         self[i]
     }
-    // A loop, whose body is compiled in: `std::array::from_fn` calls a larger one.
+    // A loop, whose body is compiled in: for each `f` `std::array::from_fn` would compile several
+    // functions.
     #[inline(always)]
     fn with(&self, mut f: impl FnMut(usize) -> f64) -> Self {
         let mut of = [0.0; N];
@@ -109,8 +110,8 @@ impl<const N: usize> State for SVector<f64, N> {
         self[i]
     }
     #[inline(always)]
-    fn with(&self, mut f: impl FnMut(usize) -> f64) -> Self {
-        Self::from_fn(|i, _| f(i))
+    fn with(&self, f: impl FnMut(usize) -> f64) -> Self {
+        [0.0; N].with(f).into()
     }
 }
 

@@ -87,7 +87,7 @@ impl Turning for Vector3<f64> {
     }
     #[inline]
     fn from_coordinates(mut f: impl FnMut(usize) -> f64) -> Self {
-        Self::from_fn(|i, _| f(i))
+        Self::new(f(0), f(1), f(2))
     }
 }
 
@@ -109,8 +109,8 @@ impl<const N: usize, S: Turning> State for Moving<N, S> {
     #[inline]
     fn with(&self, mut f: impl FnMut(usize) -> f64) -> Self {
         Self {
-            position: SVector::from_fn(|i, _| f(i)),
-            velocity: SVector::from_fn(|i, _| f(N + i)),
+            position: self.position.with(&mut f),
+            velocity: self.velocity.with(|i| f(N + i)),
             spin: S::from_coordinates(|i| f(2 * N + i)),
         }
     }

@@ -52,7 +52,6 @@ impl<const N: usize> State for Row<N> {
     }
     #[inline]
     fn with(&self, mut f: impl FnMut(usize) -> f64) -> Self {
-        let gaps = std::array::from_fn(&mut f);
-        Self { gaps, velocities: std::array::from_fn(|i| f(N + i)) }
+        Self { gaps: self.gaps.with(&mut f), velocities: self.velocities.with(|i| f(N + i)) }
     }
 }

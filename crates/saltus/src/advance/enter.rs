@@ -277,7 +277,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         for (bends, by) in [(0.0, 2.0), (1.0, 4.0)] {
             let mut h = shortest;
             while h < longest && h > 0.0 {
-                let [far, half, quarter] = [h, 0.5 * h, 0.25 * h].map(|h| change(h, bends));
+                let (far, half, quarter) = (change(h, bends), change(0.5 * h, bends), change(0.25 * h, bends));
                 let doubles =
                     (far - by * half).abs() < ROUGHLY * far.abs() && (half - by * quarter).abs() < ROUGHLY * half.abs();
                 if doubles && far.abs() > ROUNDINGS * rounding {

@@ -156,7 +156,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
 
 /// A crossing found `from` after the start of the guard's clock.
 fn later(guard: &mut impl FnMut(f64) -> f64, from: f64, crossing: &Crossing) -> Option<Crossing> {
-    let [inside, outside, root] = [crossing.inside, crossing.outside, crossing.root].map(|s| from + s);
+    let (inside, outside, root) = (from + crossing.inside, from + crossing.outside, from + crossing.root);
     if inside < outside && guard(inside) >= 0.0 && guard(outside) < 0.0 {
         let (inside, outside) = neighbours(guard, inside, outside);
         Some(Crossing { inside, outside, root: root.clamp(inside, outside), rest: 0.0, ..*crossing })

@@ -29,7 +29,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         turn: [f64; 2],
         leaves: bool,
     ) -> Option<Evidence> {
-        let ends = turn.map(|s| self.on(edge, step, s));
+        let ends = [self.on(edge, step, turn[0]), self.on(edge, step, turn[1])];
         let (s, least) = self.least(edge, step, turn);
         let rise = ends[0].max(ends[1]) - least;
         if !(least >= 0.0 && least <= ROUGHLY * rise) {
@@ -82,7 +82,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     fn derivatives(&mut self, edge: A::Edge, step: Step<'_, A::State>, root: f64) -> [f64; 2] {
         let by = SMALL * step.scale;
         // Zero between them.
-        let [before, after] = [root - by, root + by].map(|s| self.on(edge, step, s));
+        let (before, after) = (self.on(edge, step, root - by), self.on(edge, step, root + by));
         [(after - before) / (2.0 * by), (before + after) / (by * by)]
     }
 
@@ -112,7 +112,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     #[inline(never)]
     fn resolve(&mut self, edge: A::Edge, step: Step<'_, A::State>, root: f64) -> Option<Evidence> {
         let middle = 0.5 * root;
-        let [start, half] = [0.0, middle].map(|s| self.on(edge, step, s));
+        let (start, half) = (self.on(edge, step, 0.0), self.on(edge, step, middle));
         let (absolute, x) = (self.options.tolerance.absolute, step.at(middle));
         let off = self.moved(edge, step.time(middle), &x, half, |_| ROUNDINGS * absolute);
         self.memory.resolved = start.abs().max(half.abs()) > SURELY * off;
@@ -186,7 +186,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
         let inner = |a: f64, b: f64| [b - golden * (b - a), a + golden * (b - a)];
         let mut at = inner(a, b);
-        let mut values = at.map(|s| self.on(edge, step, s));
+        let mut values = [self.on(edge, step, at[0]), self.on(edge, step, at[1])];
         for _ in 0..SECTIONS {
             if values[0] <= values[1] {
                 b = at[1];

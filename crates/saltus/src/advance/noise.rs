@@ -121,8 +121,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     pub(super) fn bend(&mut self, edge: A::Edge, now: Time, c: &[A::State]) -> f64 {
         self.memory.stats.guards += 2;
         let bent = c[0].with(|i| c.iter().skip(2).fold(c[0].get(i), |sum, c| sum + TINY * c.get(i).abs()));
-        let [bent, start] = [&bent, &c[0]].map(|x| self.guard(edge, now.seconds(), x));
-        let bend = (bent - start).abs() / TINY;
+        let guard = |x: &A::State| self.guard(edge, now.seconds(), x);
+        let bend = (guard(&bent) - guard(&c[0])).abs() / TINY;
         if bend.is_finite() { bend } else { 0.0 }
     }
 
@@ -255,8 +255,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let slope = self.flow(mode, t, x);
         self.memory.stats.guards += 4;
         let guard = |s: f64| self.guard(edge, t + s, &x.with(|i| x.get(i) + s * slope.get(i)));
-        let [far, near] = [by, 0.5 * by].map(|s| (guard(s) - guard(-s)) / (2.0 * s));
-        (4.0 * near - far) / 3.0
+        let rate = |s: f64| (guard(s) - guard(-s)) / (2.0 * s);
+        (4.0 * rate(0.5 * by) - rate(by)) / 3.0
     }
 
     /// Whether a guard that falls at this `rate` by differences over `by`, beyond their `rounding`,
@@ -285,7 +285,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         self.memory.stats.guards += 4;
         let guard = |s: f64| self.guard(edge, t + s, &x.with(|i| x.get(i) + s * slope.get(i)));
         let start = guard(0.0);
-        let [far, near, nearest] = [by, 0.5 * by, 0.25 * by].map(|s| (guard(s) - start) / s);
+        let rate_over = |s: f64| (guard(s) - start) / s;
+        let (far, near, nearest) = (rate_over(by), rate_over(0.5 * by), rate_over(0.25 * by));
         let ahead = [2.0 * near - far, 2.0 * nearest - near];
         let lasts = |[rate, sooner]: [f64; 2]| rate < -noise && sooner <= 0.5 * rate;
         lasts(ahead) && lasts([rate, self.guard_rate(mode, edge, t, x, 0.5 * by)])

@@ -29,7 +29,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
         // Copies: what others refer to is kept in memory, and waited for.
         let (x, &(ArcEnd::Crossing { time, before: y, .. } | ArcEnd::Stop { time, state: y, .. })) = (*x, end);
-        self.promised(mode, [began, time].map(Time::seconds), [&x, &y])
+        self.promised(mode, [began.seconds(), time.seconds()], [&x, &y])
     }
 
     #[cold]
@@ -86,7 +86,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     ) -> Option<&'static str> {
         let g = |time: f64, x: &A::State| self.guard(edge, time, x);
         let zero = g(time, zero);
-        let [here, there] = [x, y].map(|x| g(time, x));
+        let (here, there) = (g(time, x), g(time, y));
         if (g(before, x) - here).abs() > 0.0 {
             return Some("changes with time while the state stands still");
         }

@@ -2,6 +2,7 @@
 //! exact to the tolerance all along.
 
 use crate::automaton::Automaton;
+use crate::automaton::refusal::wrong_dimension;
 use crate::automaton::solution::Flow;
 use crate::certainty::TINY;
 use crate::control::Tolerance;
@@ -21,7 +22,7 @@ use super::exact::natural;
 use super::near::Near;
 use super::shared::Step;
 use super::smooth::Arrival;
-use super::stepped::{SHORTEST, evened, wrong_dimension};
+use super::stepped::{SHORTEST, evened};
 use super::{Advance, ArcEnd};
 
 /// The lowest order.
@@ -167,7 +168,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let mut series = Series::around(&mut self.tape, self.smooth.within(now.seconds()), x, 0, order, unit);
             flow(self.automaton, mode, &mut series);
             if let Some(dimension) = series.mismatch() {
-                return Err(wrong_dimension(dimension, mode, now, x));
+                return Err(wrong_dimension(dimension, mode, now.seconds(), x));
             }
             self.memory.stats.flows += order as u64;
             series.read(c);
@@ -334,7 +335,7 @@ fn reach<S: State>(tolerance: &Tolerance, c: &[S]) -> f64 {
     let [mut last, mut before] = [0.0; 2];
     for i in 0..c[0].len() {
         let by = 1.0 / (tolerance.absolute + tolerance.relative * c[0].get(i).abs());
-        let [a, b] = [p, p - 1].map(|k| by * c[k].get(i));
+        let (a, b) = (by * c[p].get(i), by * c[p - 1].get(i));
         (last, before) = (last + a * a, before + b * b);
     }
     // The mean square of what is allowed in the power of -1/(2 k).

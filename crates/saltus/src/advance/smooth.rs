@@ -148,7 +148,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     pub(super) fn fell_at_stop(&mut self, edge: A::Edge, x: &A::State) -> Option<f64> {
         let stop = self.smooth.start().filter(|&stop| !self.memory.switched.has(stop, edge))?;
         self.memory.stats.guards += 2;
-        let [before, behind] = [stop.next_down(), stop.next_up()].map(|t| self.automaton.guard(edge, t, x));
+        let guard = |t: f64| self.automaton.guard(edge, t, x);
+        let (before, behind) = (guard(stop.next_down()), guard(stop.next_up()));
         let clear = self.memory.wall(edge).is_none() || -behind > self.guard_rounding(edge, stop, x, behind, x);
         let fell = before >= 0.0 && behind < 0.0 && clear;
         fell.then(|| {

@@ -1,10 +1,9 @@
 //! An arc whose flow is stepped.
 
-use std::fmt;
 use std::ops::ControlFlow;
 
 use crate::automaton::Automaton;
-use crate::automaton::refusal::flow_undefined;
+use crate::automaton::refusal::{flow_undefined, wrong_dimension};
 use crate::certainty::{FEW, MINUTE, ROUGHLY, ROUNDINGS, SMALL};
 use crate::control::{Controller, first_step};
 use crate::cross::Evidence;
@@ -44,13 +43,13 @@ const MOST_PROBED: usize = 8;
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// From `x`, where the arc begins or (not `first`) has come to by other means.
     /// A long loop: each of its parts decides what goes on to the next step.
-    pub(super) fn stepped<O: Observer<A>>(
+    pub(super) fn stepped(
         &mut self,
         mode: A::Mode,
         start: A::State,
         mut clock: Span,
         mut first: bool,
-        observer: &mut O,
+        observer: &mut impl Observer<A>,
     ) -> Result<ArcEnd<A>, Error> {
         self.stepper = self.stepper.adapted(self.memory.gait.stiff);
         let rate = self.slope(mode, clock.now, &start)?;
@@ -107,7 +106,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             } else if limit > 2.0 * h {
                 self.on_line(mode, (&{ slope }, step), range, observer)?
             } else {
-                self.first_crossing(mode, step, range, Some(&mut *observer))?
+                self.first_crossing(mode, step, range, Some(observer))?
             };
             if first && !self.memory.idle.is_empty() {
                 let reached = found.as_ref().map_or(limit, |found| found.crossing.inside);
@@ -142,12 +141,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// which goes on beyond its end.
     #[cold]
     #[inline(never)]
-    fn on_line<O: Observer<A>>(
+    fn on_line(
         &mut self,
         mode: A::Mode,
         (slope, step): (&A::State, Step<'_, A::State>),
         range: Range,
-        observer: &mut O,
+        observer: &mut impl Observer<A>,
     ) -> Result<Option<OnStep<A>>, Error> {
         let line = [step.c[0], slope.with(|i| step.scale * slope.get(i))];
         self.first_crossing(mode, Step { c: &line, ..step }, range, Some(observer))
@@ -155,24 +154,24 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
 
     /// The end of the arc at a crossing that the dense output of a `step` shows only roughly:
     /// looked for again on a real step to it.
-    fn closed_in<O: Observer<A>>(
+    fn closed_in(
         &mut self,
         mode: A::Mode,
         (x, slope, step): (&A::State, &A::State, Step<'_, A::State>),
         (rough, range): (&OnStep<A>, Range),
         remaining: f64,
-        observer: &mut O,
+        observer: &mut impl Observer<A>,
     ) -> Result<ArcEnd<A>, Error> {
         let settled = Range { roughly: false, ..range };
         if let Some(Closer { dense, h, ahead, slope: arrived }) = self.closer(mode, x, slope, step, rough, range.limit)
         {
             let closer = Step { now: step.now, c: dense.as_ref(), scale: h };
             let range = Range { limit: ahead, ..settled };
-            if let Some(again) = self.first_crossing(mode, closer, range, None::<&mut O>)? {
+            if let Some(again) = self.first_crossing(mode, closer, range, None)? {
                 return Ok(self.crossed(mode, &again, (closer, Some(arrived)), remaining, observer));
             }
         }
-        let found = self.first_crossing(mode, step, settled, None::<&mut O>)?;
+        let found = self.first_crossing(mode, step, settled, None)?;
         let found = found.as_ref().unwrap_or(rough);
         let slope = slope_of(step.c, step.scale, found.crossing.root);
         Ok(self.crossed(mode, found, (step, Some(slope)), remaining, observer))
@@ -360,7 +359,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     #[inline]
     pub(super) fn slope(&mut self, mode: A::Mode, time: Time, x: &A::State) -> Result<A::State, Error> {
         let slope = self.flow(mode, time.seconds(), x);
-        if slope.len() == x.len() { Ok(slope) } else { Err(wrong_dimension(slope.len(), mode, time, x)) }
+        if slope.len() == x.len() { Ok(slope) } else { Err(wrong_dimension(slope.len(), mode, time.seconds(), x)) }
     }
 
     pub(super) fn flow(&mut self, mode: A::Mode, t: f64, x: &A::State) -> A::State {
@@ -454,8 +453,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     #[inline(never)]
     fn slope_before(&mut self, edge: A::Edge, step: Step<'_, A::State>, s: f64) -> f64 {
         let near = (s - SMALL * step.scale).max(0.0);
-        let [before, there] = [near, s].map(|s| self.on(edge, step, s));
-        (there - before) / (s - near)
+        (self.on(edge, step, s) - self.on(edge, step, near)) / (s - near)
     }
 }
 
@@ -490,11 +488,4 @@ pub(super) fn evened(h: f64, longest: f64) -> f64 {
     } else {
         h
     }
-}
-
-/// The flow, or its series, has another `dimension` than the state `x`.
-#[cold]
-pub(super) fn wrong_dimension<X: State>(dimension: usize, mode: impl fmt::Debug, time: Time, x: &X) -> Error {
-    let place = Place::new(time.seconds(), mode, None::<()>, x);
-    Error::new(ErrorKind::Dimension, place).noting(Some(dimension.to_string()))
 }

@@ -1,8 +1,11 @@
-//! A flow or a guard that is not a number: the failure of a run, with the automaton's own reason
-//! where it gives one.
+//! A flow or a guard that is not a number, with the automaton's own reason where it gives one; a
+//! flow of another dimension: the failure of a run.
+
+use std::fmt;
 
 use super::Automaton;
 use crate::error::{Error, ErrorKind, Place};
+use crate::state::State;
 
 /// The flow is not finite at (t, x); `which` coordinates, if only they are at fault.
 #[cold]
@@ -34,4 +37,11 @@ pub(crate) fn guard_undefined<A: Automaton>(
         Some(refusal) => refusal.at("guard", place),
         None => Error::new(ErrorKind::Guard, place),
     }
+}
+
+/// The flow, or its series, has another `dimension` than the state `x`.
+#[cold]
+pub(crate) fn wrong_dimension<X: State>(dimension: usize, mode: impl fmt::Debug, t: f64, x: &X) -> Error {
+    let place = Place::new(t, mode, None::<()>, x);
+    Error::new(ErrorKind::Dimension, place).noting(Some(dimension.to_string()))
 }

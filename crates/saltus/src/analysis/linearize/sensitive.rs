@@ -53,7 +53,10 @@ impl<S: State, const K: usize> State for Tangent<S, K> {
     fn with(&self, mut f: impl FnMut(usize) -> f64) -> Self {
         let n = self.x.len();
         let x = self.x.with(&mut f);
-        let columns = std::array::from_fn(|k| self.columns[k].with(|i| f(n * (k + 1) + i)));
+        let mut columns = self.columns;
+        for (k, column) in columns.iter_mut().enumerate() {
+            *column = column.with(|i| f(n * (k + 1) + i));
+        }
         Self { x, columns, ..*self }
     }
     /// That of the state; `voltage by q1` in the column of q₁.
