@@ -103,7 +103,14 @@ pub(super) fn of_clauses(text: &str) -> Option<Unit> {
         split(name).iter().all(plain).then_some(unit)
     };
     let of_brackets = || bracketed(text).and_then(|text| unit(text).or_else(|| inside(text)));
-    unit(text).or_else(|| clauses(text).find_map(named)).or_else(of_brackets)
+    // A title ends in the unit of what stands below it: `Golf ball (cm)`.
+    let ends = || {
+        let (title, unit) = text.trim().strip_suffix(')')?.rsplit_once('(')?;
+        let unit = Unit::parse(unit.trim()).filter(|unit| !unit.unscaled())?;
+        let plain = title.contains(char::is_alphabetic) && !title.contains(|c: char| c.is_ascii_digit());
+        (plain && matches!(unit.dimension, Dimension::Length | Dimension::Time)).then_some(unit)
+    };
+    unit(text).or_else(|| clauses(text).find_map(named)).or_else(of_brackets).or_else(ends)
 }
 
 /// `Uncertainty in heights: ±1 cm`: the standard error of all readings of a dimension, in SI units.

@@ -6,6 +6,7 @@ mod blocks;
 mod noted;
 mod sentences;
 mod values;
+mod wiki;
 
 pub(super) use blocks::bulleted;
 use values::{LIST, length, listed_numbers, listed_values, named_list};
@@ -27,7 +28,7 @@ pub(super) fn table(text: &str) -> Option<String> {
     }
     let forms = [
         latex,
-        wiki,
+        wiki::table,
         blocks::led,
         blocks::table,
         blocks::records,
@@ -262,46 +263,6 @@ fn unmarked(row: &str) -> String {
     found.replace("}{", " ").replace(['$', '{', '}'], "")
 }
 
-/// A table of `MediaWiki`: rows parted by `|-`, cells behind `!` and `|`; `None` if it is none.
-fn wiki(text: &str) -> Option<String> {
-    let begins = |mark: &str| text.lines().any(|line| line.trim_start().starts_with(mark));
-    if !begins("{|") || !begins("|-") {
-        return None;
-    }
-    let mut lines: Vec<String> = Vec::new();
-    // The line that the cells of the row stand in, and whether a table is open.
-    let (mut row, mut open): (Option<usize>, bool) = (None, false);
-    for (n, line) in text.lines().enumerate() {
-        let bare = line.trim();
-        lines.push(String::new());
-        match bare {
-            _ if bare.starts_with("{|") => (row, open) = (None, true),
-            _ if !open => lines[n].push_str(line),
-            _ if bare.starts_with("|}") => (row, open) = (None, false),
-            _ if bare.starts_with("|-") => row = None,
-            _ if bare.starts_with("|+") => lines[n].push_str(contents(&bare[2..])),
-            _ => {
-                let Some(cells) = bare.strip_prefix(['|', '!']) else { continue };
-                for cell in cells.split("||").flat_map(|cells| cells.split("!!")) {
-                    let at = *row.get_or_insert(n);
-                    if !lines[at].is_empty() {
-                        lines[at].push('\t');
-                    }
-                    lines[at].push_str(contents(cell));
-                }
-            }
-        }
-    }
-    Some(lines.join("\n") + "\n")
-}
-
-/// What a cell of it holds, without the attributes before it and without quotes of
-/// bold letters.
-fn contents(cell: &str) -> &str {
-    let cell = cell.rsplit_once('|').filter(|(before, _)| before.contains('=')).map_or(cell, |(_, cell)| cell);
-    cell.trim().trim_matches('\'').trim()
-}
-
 /// Marks between one height and the next.
 const ARROWS: [&str; 9] = ["-->", "->", "=>", ">", "→", "⟶", "⇒", "➔", "➜"];
 
@@ -334,7 +295,7 @@ fn parts(line: &str) -> (Vec<Part<'_>>, &str) {
         let stop = spelt.find(|c: char| !(c.is_alphabetic() || matches!(c, '%' | '"'))).unwrap_or(spelt.len());
         // What stands before a sign is a name, `hit 1 t=3885 ms`, and a unit before an arrow.
         let sign = spelt[stop..].trim_start();
-        let name = sign.starts_with(['=', ':']) && !arrows().any(|arrow| sign.starts_with(arrow));
+        let name = sign.starts_with(['=', ':', '_']) && !arrows().any(|arrow| sign.starts_with(arrow));
         let unit = (stop > 0 && !name && Unit::parse(&spelt[..stop]).is_some()).then(|| end + blank + stop);
         if unit.is_none() && blank == 0 && letter(spelt.chars().next()) {
             continue;
@@ -352,7 +313,7 @@ fn parts(line: &str) -> (Vec<Part<'_>>, &str) {
 fn patterned(text: &str) -> Option<String> {
     let lines: Vec<&str> = text.lines().collect();
     // A semicolon, or blanks, part `h1 = 64 cm; h2 = 41 cm`, and cells without such names.
-    let blanks = |line: &str| line.trim().contains("  ") && !line.contains(['=', ':']);
+    let blanks = |line: &str| line.trim().contains("  ") && !line.contains(['=', ':']) && !labelled(line);
     let chained = |line: &str| arrows().any(|arrow| line.contains(arrow));
     let cells = |line: &str| {
         line.contains(['\t', '|']) || line.contains(';') && !line.contains('=') || blanks(line) && !chained(line)
@@ -388,6 +349,13 @@ fn patterned(text: &str) -> Option<String> {
         }
     };
     Some((0..lines.len()).map(spelt).collect::<Vec<_>>().join("\n") + "\n")
+}
+
+/// Whether each number of a line has a word of its own before it, `touch 1   frame 118`, or it has
+/// but one.
+fn labelled(line: &str) -> bool {
+    let (found, _) = parts(line);
+    found.len() < 2 || found.iter().all(|part| part.words.ends_with(char::is_alphabetic))
 }
 
 /// The words of a line around its numbers, without arrows; `None` where no words part them, as
@@ -437,6 +405,8 @@ mod tests {
             ),
             ("in cm\n100→64\n80→51\n", "in cm\nheight before\theight 1\r100\t64\n80\t51\n"),
             ("Filmed it. h0=1m, h1=64cm, h2=41cm.\n", "h0\th1\th2\r1m\t64cm\t41cm\n"),
+            ("Clip   1\ntouch 1   frame 118\ntouch 2   frame 268\n", "Clip   1\ntouch\tframe\r1\t118\n2\t268\n"),
+            ("hit 1  t_ms=102  peak=80\nhit 2  t_ms=707  peak=58\n", "hit\tt_ms\tpeak\r1\t102\t80\n2\t707\t58\n"),
             (
                 "Dropped from 1.0 m, came back to 64 cm.\nDropped from 2.0 m, came back to 1.3 m.\n",
                 "Dropped from\tcame back to\r1.0 m\t64 cm\n2.0 m\t1.3 m\n",
@@ -488,11 +458,5 @@ mod tests {
         for text in ["Height (cm)\n100\n64\n", "Height\ndrop 200\n1st 128\n", "Height (cm)\ndrop 200\nof a ball\n"] {
             assert_eq!(headed(text), None, "{text}");
         }
-    }
-
-    #[test]
-    fn tables_of_a_wiki_have_rows() {
-        let text = "{| class=\"wikitable\"\n|+ Bounces\n! Bounce !! Height (cm)\n|-\n| 0 || 100\n|-\n| 1\n| align=\"right\" | '''64'''\n|}\n";
-        assert_eq!(wiki(text).as_deref(), Some("\nBounces\nBounce\tHeight (cm)\n\n0\t100\n\n1\t64\n\n\n"));
     }
 }

@@ -235,9 +235,14 @@ fn placed(cells: &[Range<usize>], columns: &[Range<usize>]) -> Option<Vec<usize>
     found.windows(2).all(|pair| pair[0] < pair[1]).then_some(found)
 }
 
-/// Whether a line is drawn, and holds nothing: `-----  ------`, `=====`.
+/// Whether a line is drawn, `-----  ------`, `=====`, or names types, `<fct> <dbl>`: it holds
+/// nothing.
 fn drawn(line: &str) -> bool {
     let bare = line.trim();
+    let kind = |word: &str| word.len() > 2 && word.starts_with('<') && word.ends_with('>');
+    if !bare.is_empty() && bare.split_whitespace().all(kind) {
+        return true;
+    }
     (bare.contains("---") || bare.contains("===")) && bare.chars().all(|c| matches!(c, '-' | '=' | ' '))
 }
 
@@ -273,13 +278,11 @@ fn of_cells<'a>(text: &str, lines: impl Iterator<Item = &'a str> + Clone) -> Opt
         !alike(&line) && !number(&line) && own.len() > 1 && own.len() + 1 == width && placed(&own, &columns).is_some()
     });
     let table = table + usize::from(names);
-    // Of the lines around it most tell something, or greet; a title may be parted by blanks.
-    let title = |n: usize, line: &&str| names && n + 1 < first && !number(line);
-    let plain = |(n, line): &(usize, &str)| !alike(line) && (parted(line).nth(1).is_none() || title(*n, line));
-    let around = lines.clone().enumerate().filter(plain).filter(|(n, _)| !(names && n + 1 == first)).count();
-    let found = rows > 1
-        && lines.clone().filter(alike).all(decimal)
-        && (3 * table >= 2 * lines.clone().count() || table > rows && rows > 2 && table + around == lines.count());
+    // What stands before and behind its rows may be anything.
+    let end = lines.clone().enumerate().filter(|(_, line)| alike(line)).last().map_or(0, |(n, _)| n + 1);
+    let within = end - lines.clone().position(|line| alike(&line)).unwrap_or(0) + usize::from(names);
+    let whole = if rows > 2 { within } else { lines.clone().count() };
+    let found = rows > 1 && lines.clone().filter(alike).all(decimal) && 3 * table >= 2 * whole;
     found.then_some(width)
 }
 

@@ -151,7 +151,10 @@ impl Heading {
         };
         let from = self.drop.as_ref();
         let released = has(Release) && !has(Rebound) && !has(After) && numbers.trial.is_empty() && from.is_none();
+        // `ordinate y1`: the sign of the place of the first point, and of no bounce.
+        let signed = self.atoms.iter().filter(|atom| **atom == Position).count() > 1;
         let at = match (numbers.bounce.first(), what) {
+            (Some(_), What::Height) if signed => At::Row,
             (Some(0), What::Height) => At::Release,
             (Some(&n), _) => At::Nth(n),
             (None, What::Height | What::Unsaid) if released || has(Before) && !has(After) && !has(Rebound) => {

@@ -24,6 +24,7 @@ fn heights_and_times_and_at_which_event() {
         ("Bounce 1 (cm)", Height, Nth(1)),
         ("Bounce 1 (s)", Time, Nth(1)),
         ("t1 (s)", Time, Nth(1)),
+        ("Ordonnée y1 (m)", Height, Row),
         ("time between bounces (s)", Interval, Row),
         ("Air time (s)", Interval, Row),
         ("Lap Time", Interval, Row),

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::super::cell::Cell;
 use super::super::grid::View;
-use super::super::heading::{Heading, Meaning, What};
+use super::super::heading::{Heading, Meaning, Role, What};
 use super::super::phrases::Phrase;
 use super::super::sequence::{LEVEL, of_samples};
 use super::super::units::{Dimension, Unit};
@@ -26,11 +26,12 @@ impl Header {
     }
 
     /// Whether each number of a row has a name of its own that is understood, and that says what
-    /// the number is.
+    /// the number is, or that it is a mean or an error of its neighbours.
     pub(super) fn names_all(&self, view: View<'_>, row: usize) -> bool {
         let says = |name: &String| {
             let heading = Heading::parse(name);
-            heading.understood() && heading.value().is_none_or(|value| value.what != What::Unsaid)
+            heading.understood()
+                && heading.value().is_none_or(|value| value.what != What::Unsaid || value.role != Role::Reading)
         };
         let own = |n: usize| self.names.get(n).filter(|name| !self.names[..n].contains(name));
         (0..view.width(row)).filter(|&n| view.is_number(row, n)).all(|n| own(n).is_some_and(says))
@@ -157,7 +158,7 @@ fn counted(view: View<'_>, row: usize, end: usize) -> Option<Header> {
     // Below the name of what was dropped stand names, but none of a quantity.
     let below = view.cell(row + 1, 0);
     let called = named == 1 && matches!(first.meaning, Meaning::Setting) && !below.is_empty();
-    let called = called && Heading::parse(below).value().is_none();
+    let called = called && Heading::parse(below).value().is_none_or(|value| value.what == What::Unsaid);
     let begins = view.is_number(row + 1, if called { named } else { 0 });
     let of = if falling(view, row + 1..end, named, count) { "bounce" } else { "trial" };
     let names: Vec<String> = (0..width)
@@ -166,7 +167,8 @@ fn counted(view: View<'_>, row: usize, end: usize) -> Option<Header> {
             cell => cell.to_owned(),
         })
         .collect();
-    let score = score(&names);
+    // What the numbers are, lines above may state.
+    let score = score(&names).max(VALUE);
     (begins && first.understood()).then_some(Header { names, at: row, below: row + 1, score })
 }
 
@@ -238,6 +240,10 @@ pub(super) fn both(upper: &[String], lower: &[String]) -> Option<Vec<String>> {
         return (0..width)
             .all(|n| cell(lower, n).is_empty() || !cell(upper, n).is_empty())
             .then(|| (0..width).map(name).collect());
+    }
+    // A name that ends in a colon has its value beside it.
+    if upper.iter().any(|cell| cell.ends_with(':')) {
+        return None;
     }
     // A title stands alone, above the first name.
     let first = |line: &[String]| line.iter().position(|cell| !cell.is_empty());
