@@ -249,6 +249,11 @@ mod tests {
             ("Drop height (cm),1,2,3\n100,64,63,65", "Drop height (cm)|trial 1|trial 2|trial 3", (0, 1)),
             ("Rebound in cm,,,\nBall,1,2,Mean\nGolf,64,63,63.5", "Ball|trial 1|trial 2|Mean", (1, 2)),
             ("Ball:,Super,\nDrop #,Drop (in),Rebound (in)\n1,72,40", "Drop #|Drop (in)|Rebound (in)", (1, 2)),
+            (
+                "Drop (in),Rebound (in):,\n,Trial 1,Trial 2\n72,40,41",
+                "Drop (in)|Trial 1, Rebound (in):|Trial 2, Rebound (in):",
+                (0, 2),
+            ),
         ] {
             let (names, header, rows) = names(text);
             assert_eq!(names.join("|"), expected, "{text}");

@@ -242,7 +242,7 @@ pub(super) fn both(upper: &[String], lower: &[String]) -> Option<Vec<String>> {
             .then(|| (0..width).map(name).collect());
     }
     // A name that ends in a colon has its value beside it.
-    if upper.iter().any(|cell| cell.ends_with(':')) {
+    if upper.windows(2).any(|pair| pair[0].ends_with(':') && !pair[1].is_empty()) {
         return None;
     }
     // A title stands alone, above the first name.
