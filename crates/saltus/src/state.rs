@@ -88,13 +88,14 @@ impl<const N: usize> State for [f64; N] {
     fn get(&self, i: usize) -> f64 {
         self[i]
     }
-    // A loop, whose body is compiled in: for each `f` `std::array::from_fn` would compile several
-    // functions.
+    // A plain loop, whose body is compiled in: for each `f` `std::array::from_fn` would compile
+    // several functions, and an iterator three times the code.
     #[inline(always)]
     fn with(&self, mut f: impl FnMut(usize) -> f64) -> Self {
-        let mut of = [0.0; N];
-        for (i, coordinate) in of.iter_mut().enumerate() {
-            *coordinate = f(i);
+        let (mut of, mut i) = ([0.0; N], 0);
+        while i < N {
+            of[i] = f(i);
+            i += 1;
         }
         of
     }
@@ -230,9 +231,10 @@ impl<const CAP: usize> State for Coords<CAP> {
         self.values[i]
     }
     fn with(&self, mut f: impl FnMut(usize) -> f64) -> Self {
-        let mut values = [0.0; CAP];
-        for (i, value) in values.iter_mut().enumerate().take(self.len) {
-            *value = f(i);
+        let (mut values, mut i) = ([0.0; CAP], 0);
+        while i < self.len {
+            values[i] = f(i);
+            i += 1;
         }
         Self { values, len: self.len }
     }

@@ -190,14 +190,14 @@ impl<S: State, F: FnMut(f64, &S) -> S> Differences<'_, F, S> {
     fn state<const N: usize>(&self, c: f64, weights: &[f64; N], differences: [&S; N]) -> S {
         let Self { x, slope, h, .. } = self;
         x.with(|i| {
-            let along = |rest: f64| x.get(i) + h * (c * slope.get(i) + rest);
-            match (weights.split_last(), differences.split_last()) {
-                (Some((weight, weights)), Some((last, earlier))) => {
-                    let earlier: f64 = weights.iter().zip(earlier).map(|(w, d)| w * d.get(i)).sum();
-                    along(earlier) + (h * weight) * last.get(i)
-                }
-                _ => along(0.0),
+            // A plain loop: each stage of each method is compiled for each model.
+            let (mut earlier, mut k) = (-0.0, 0); // to which a first -0.0 is added as it is
+            while k + 1 < N {
+                earlier += weights[k] * differences[k].get(i);
+                k += 1;
             }
+            let along = x.get(i) + h * (c * slope.get(i) + earlier);
+            if k < N { along + (h * weights[k]) * differences[k].get(i) } else { along }
         })
     }
 

@@ -246,8 +246,13 @@ impl Stepper for Rodas5P {
 /// The b₀, b₁, b₂ of the dense output.
 #[inline]
 fn inner<S: State>(x: &S, u: [&S; 8]) -> [S; 3] {
-    let of_stages = |weights: &[f64; 8]| x.with(|i| weighted(weights, u, i));
-    [of_stages(&H[0]), of_stages(&H[1]), of_stages(&H[2])]
+    [of_stages(x, u, &H[0]), of_stages(x, u, &H[1]), of_stages(x, u, &H[2])]
+}
+
+/// The stages, weighted.
+#[inline]
+fn of_stages<S: State>(x: &S, u: [&S; 8], weights: &[f64; 8]) -> S {
+    x.with(|i| weighted(weights, u, i))
 }
 
 /// How far the dense output is off half way in the directions in which the flow is stiff.
@@ -264,8 +269,7 @@ fn off_half_way<S: State>(
     (x, end): (&S, &S),
     u: &[S; 8],
 ) -> S {
-    let of_stages = |weights: &[f64; 8]| x.with(|i| weighted(weights, u.each_ref(), i));
-    let (bent, turned) = (of_stages(&HALF_WAY[0]), of_stages(&HALF_WAY[1]));
+    let (bent, turned) = (of_stages(x, u.each_ref(), &HALF_WAY[0]), of_stages(x, u.each_ref(), &HALF_WAY[1]));
     let f = flow(t + 0.5 * h, &x.with(|i| 0.5 * (x.get(i) + end.get(i)) + bent.get(i)));
     let slope = |i: usize| end.get(i) - x.get(i) + turned.get(i);
     let off = system.solve(&x.with(|i| GAMMA * (h * f.get(i) - slope(i))));

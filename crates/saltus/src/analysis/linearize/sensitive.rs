@@ -53,9 +53,10 @@ impl<S: State, const K: usize> State for Tangent<S, K> {
     fn with(&self, mut f: impl FnMut(usize) -> f64) -> Self {
         let n = self.x.len();
         let x = self.x.with(&mut f);
-        let mut columns = self.columns;
-        for (k, column) in columns.iter_mut().enumerate() {
-            *column = column.with(|i| f(n * (k + 1) + i));
+        let (mut columns, mut k) = (self.columns, 0);
+        while k < columns.len() {
+            columns[k] = columns[k].with(|i| f(n * (k + 1) + i));
+            k += 1;
         }
         Self { x, columns, ..*self }
     }
