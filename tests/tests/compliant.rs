@@ -134,3 +134,22 @@ proptest! {
         prop_assert!(contacts.iter().all(|contact| contact.cor.is_none_or(|e| (0.0..=1.0).contains(&e))));
     }
 }
+
+proptest! {
+    /// From any height a recorded run goes on through its contacts, in pieces that their number and
+    /// the time ask for.
+    #[test]
+    fn the_lowest_drops_go_on(height in -16.0..1.0, zeta in 0.01..3.0, tension in any::<bool>()) {
+        let (m, k, g, height) = (0.1, 1e4_f64, 9.81, 10f64.powf(height));
+        let law = KelvinVoigt::new(k, 2.0 * zeta * (k * m).sqrt()).unwrap();
+        let ball = Compliant::new(m, g, if tension { law.with_tension() } else { law }).unwrap();
+        let (stage, start) = ball.released(height, 0.0);
+        let touch = (2.0 * height / g).sqrt();
+        let end = touch + 0.5;
+        let run = Simulation::of(&ball).most_steps(5000).run(stage, start, 0.0..end).unwrap();
+        prop_assert_eq!(run.end.time.seconds(), end, "{}", run.end.stop);
+        let first = ball.contacts(&run.trajectory)[0];
+        prop_assert!((first.touch - touch).abs() <= 8.0 * f64::EPSILON * touch, "{first:?}");
+        prop_assert!((first.speed - g * touch).abs() <= 8.0 * f64::EPSILON * g * touch, "{first:?}");
+    }
+}

@@ -79,9 +79,6 @@ mod template;
 mod value;
 pub mod vary;
 
-#[cfg(test)]
-mod tests;
-
 pub use air::{Decay, Effects, Linear, Quadratic};
 pub use animation::{Departure, Squash, Stage, Staging, at_most, length, rounded_up};
 pub use ball::{Ball, Start};

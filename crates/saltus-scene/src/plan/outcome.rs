@@ -43,7 +43,8 @@ pub struct Outcome {
 
 impl Outcome {
     /// The outcome of a recorded run.
-    pub(crate) fn of(record: &Record) -> Self {
+    #[must_use]
+    pub fn of(record: &Record) -> Self {
         let impacts = record.impacts();
         let first = impacts.iter().find(|impact| impact.ball == 0);
         Self {
