@@ -2,7 +2,7 @@
 //! chemistry.
 
 use saltus::nalgebra::{Vector2, Vector3, Vector4, vector};
-use saltus::{Dop853, Entry, Hybrid, Jump, Polynomial, Rodas5P, RunOf, Simulation};
+use saltus::{Auto, Dop853, Entry, Hybrid, Jump, Polynomial, Rodas5P, RunOf, Simulation};
 use saltus_tests::watched::{watched, watched_affine};
 
 use crate::report::Report;
@@ -169,7 +169,11 @@ fn van_der_pol(case: &mut Report) {
     let mu = case.param("mu");
     let flow = move |_t: f64, x: &Vector2<f64>| vector![x[1], mu * (1.0 - x[0] * x[0]) * x[1] - x[0]];
     let automaton = watched_affine(flow, |_t, x| x[0]);
-    let run = Simulation::of(&automaton).stepper(Dop853).tolerance(1e-13).run("run", vector![2.0, 0.0], 0.0..330.0);
+    let run = Simulation::of(&automaton).stepper(Auto::from(Dop853)).tolerance(1e-13).run(
+        "run",
+        vector![2.0, 0.0],
+        0.0..330.0,
+    );
     let run = run.unwrap();
     case.ran(&run.end.stats);
     for (n, jump) in (1..=3).zip(run.trajectory.jumps()) {
@@ -192,7 +196,7 @@ fn robertson(case: &mut Report) {
         .edge("run", "run", move |_t, y| y[0] - lev1, |_t, y| *y)
         .affine()
         .entry(Entry::Wait);
-    let simulation = Simulation::of(&automaton).stepper(Rodas5P).tolerance(1e-12).absolute_tolerance(1e-20);
+    let simulation = Simulation::of(&automaton).stepper(Auto::from(Rodas5P)).tolerance(1e-12).absolute_tolerance(1e-20);
     let run = simulation.run("run", vector![1.0, 0.0, 0.0], 0.0..1e8).unwrap();
     case.ran(&run.end.stats);
     let [first, second] = run.trajectory.jumps() else { panic!("{:?}", run.trajectory.jumps()) };

@@ -1,7 +1,7 @@
 //! Contact that takes time: each run by steps or by its exact flow, and each law's own closed form.
 
 use saltus::nalgebra::{Vector2, vector};
-use saltus::{Dop853, Run, RunOf, Simulation, Stop};
+use saltus::{Auto, Dop853, Run, RunOf, Simulation, Stop};
 use saltus_bounce::Compliant;
 use saltus_bounce::compliant::{Contact, Moment, Stage};
 use saltus_bounce::contact::{ContactLaw, Hertz, HuntCrossley, KelvinVoigt};
@@ -28,7 +28,7 @@ fn tight<L: ContactLaw>(
     (stage, start): (Stage, Vector2<f64>),
     end: f64,
 ) -> RunOf<Compliant<L>> {
-    let simulation = Simulation::of(ball).stepper(Dop853).tolerance(1e-14).absolute_tolerance(1e-20);
+    let simulation = Simulation::of(ball).stepper(Auto::from(Dop853)).tolerance(1e-14).absolute_tolerance(1e-20);
     let run = simulation.run(stage, start, 0.0..end).unwrap();
     case.ran(&run.end.stats);
     run

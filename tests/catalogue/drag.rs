@@ -1,7 +1,7 @@
 //! Balls in air: by the closed forms of their flights, and by steps.
 
 use saltus::nalgebra::{Vector2, vector};
-use saltus::{Dop853, Hybrid, Jump, Rodas5P, Run, RunOf, Simulation, State, Stop};
+use saltus::{Auto, Dop853, Hybrid, Jump, Rodas5P, Run, RunOf, Simulation, State, Stop};
 use saltus_bounce::effects::{Gravity, QuadraticDrag};
 use saltus_bounce::flight::{LinearDragFlight, QuadraticDragFlight};
 use saltus_bounce::walls::Plane;
@@ -77,7 +77,7 @@ fn check_parted(case: &mut Report, run: &RunOf<Hybrid<'_, Vector2<f64>>>, last: 
 fn quadratic_moderate(case: &mut Report) {
     quadratic(case, 20.0, 6);
     let (ball, start) = (parted(case), vector![case.param("h"), 0.0]);
-    let simulation = Simulation::of(&ball).stepper(Dop853).tolerance(1e-13).absolute_tolerance(1e-25);
+    let simulation = Simulation::of(&ball).stepper(Auto::from(Dop853)).tolerance(1e-13).absolute_tolerance(1e-25);
     let run = simulation.run("down", start, 0.0..20.0).unwrap();
     check_parted(case, &run, 6);
 }
@@ -85,7 +85,7 @@ fn quadratic_moderate(case: &mut Report) {
 fn quadratic_strong(case: &mut Report) {
     quadratic(case, 400.0, 4);
     let (ball, start) = (parted(case), vector![case.param("h"), 0.0]);
-    let simulation = Simulation::of(&ball).stepper(Rodas5P).tolerance(1e-13).absolute_tolerance(1e-22);
+    let simulation = Simulation::of(&ball).stepper(Auto::from(Rodas5P)).tolerance(1e-13).absolute_tolerance(1e-22);
     let run = simulation.run("down", start, 0.0..400.0).unwrap();
     check_parted(case, &run, 4);
 }
@@ -120,7 +120,11 @@ fn projectile(case: &mut Report) {
     let floor = Plane::floor(0.0).unwrap();
     let ball = Flyer::gripped(effects, floor, Cor::new(e).unwrap(), Keeps::new(mu).unwrap()).unwrap();
     let start = Moving::new(vector![0.0, 0.0], vector![s, s]);
-    let run = Simulation::of(&ball).stepper(Dop853).tolerance(1e-13).run(Stance::FLIGHT, start, 0.0..20.0).unwrap();
+    let run = Simulation::of(&ball)
+        .stepper(Auto::from(Dop853))
+        .tolerance(1e-13)
+        .run(Stance::FLIGHT, start, 0.0..20.0)
+        .unwrap();
     case.ran(&run.end.stats);
     let jumps = run.trajectory.jumps().iter();
     for (n, impact) in (1..=3).zip(jumps.filter(|jump| matches!(jump.edge(), Some(Event::Meet(_))))) {

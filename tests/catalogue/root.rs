@@ -1,7 +1,7 @@
 //! Crossings that are hard to find, hard to tell apart, or not there.
 
 use saltus::nalgebra::{Vector2, vector};
-use saltus::{Automaton, Dop853, Entry, ErrorKind, Hybrid, Jump, Polynomial, Run, RunOf, Simulation, State};
+use saltus::{Auto, Automaton, Dop853, Entry, ErrorKind, Hybrid, Jump, Polynomial, Run, RunOf, Simulation, State};
 use saltus_tests::watched::{watched, watched_affine};
 
 use crate::report::Report;
@@ -27,8 +27,8 @@ pub(crate) fn times<M: Copy, E, S: State>(run: &Run<M, E, S>) -> Vec<f64> {
     run.trajectory.jumps().iter().map(Jump::t).collect()
 }
 
-pub(crate) fn tight<A: Automaton>(automaton: &A) -> Simulation<'_, A, Dop853> {
-    Simulation::of(automaton).stepper(Dop853).tolerance(1e-14)
+pub(crate) fn tight<A: Automaton>(automaton: &A) -> Simulation<'_, A, Auto> {
+    Simulation::of(automaton).stepper(Auto::from(Dop853)).tolerance(1e-14)
 }
 
 /// x' = 1 from 0, exactly, with a watched guard.

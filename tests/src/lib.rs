@@ -1,6 +1,9 @@
 //! Runs the code in the project's pages as documentation tests, and keeps what several tests share;
 //! those are in this package's `tests` folder, fuzz targets in `fuzz`.
 
+// Automata of functions are compiled there, once for all test programs.
+use saltus_instances as _;
+
 pub mod any_scene;
 pub mod random_scene;
 pub mod reference;

@@ -5,6 +5,7 @@
 
 use saltus::nalgebra::{Vector2, vector};
 use saltus::{Cause, Hybrid, Simulation, Stop};
+use saltus_instances as _;
 
 /// Inflow and leaks, marks and volumes at the start.
 type Case = (f64, [f64; 2], [f64; 2], [f64; 2]);

@@ -9,6 +9,7 @@ use allocation_counter::measure;
 use saltus::nalgebra::{Vector2, vector};
 use saltus::{Dop853, Hybrid, Simulation};
 use saltus_bounce::{Ball, Cor, Mode};
+use saltus_instances as _;
 
 #[test]
 fn exact_arcs() {

@@ -9,6 +9,7 @@ use saltus::{
     Automaton, Certificate, Edges, Hybrid, Invertible, Jump, JumpOf, Polynomial, Refusal, Reversed, Simulation, Stop,
     TrajectoryOf,
 };
+use saltus_instances as _;
 
 fn ball() -> Hybrid<'static, Vector2<f64>> {
     Hybrid::new().mode("flight", |_t, x: &Vector2<f64>| vector![x[1], -9.8]).edge(

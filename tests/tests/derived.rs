@@ -8,6 +8,7 @@ use saltus::{
     Automaton, Clock, Clocks, Edges, ErrorKind, Hybrid, Lift, Linearize, Number, Over, Refusal, Sensitive, Simulation,
     State, Wrt,
 };
+use saltus_instances as _;
 
 /// A buck converter: coil and capacitor, and the time since its switch was closed.
 #[derive(Clone, Copy, Debug, PartialEq, State, serde::Serialize, serde::Deserialize)]

@@ -9,6 +9,7 @@ use saltus::{
     Automaton, Clock, Coords, Edges, Entry, Error, ErrorKind, Hybrid, JumpOf, Linearize, Number, Observer, Refusal,
     Reversed, Simulation, saltation,
 };
+use saltus_instances as _;
 
 type Planar = Hybrid<'static, Vector2<f64>>;
 type Line = Hybrid<'static, f64>;

@@ -10,7 +10,7 @@ use proptest::prop_oneof;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
 use saltus::nalgebra::{Vector2, Vector3, vector};
-use saltus::{Dop853, Rodas5P, Simulation, State, Stop, Tsit5};
+use saltus::{Auto, Dop853, Rodas5P, Simulation, State, Stop, Tsit5};
 use saltus_bounce::effects::{Gravity, LinearDrag, Wind};
 use saltus_bounce::friction::Friction;
 use saltus_bounce::walls::{Cuboid, Face, Lift, MOST_FACES, Plane, Round, Stairs, Table, Walls};
@@ -106,7 +106,7 @@ fn curved_ground() {
     let off = 1e-3_f64;
     let start = Moving::new(vector![radius * off.sin(), radius * off.cos()], vector![0.0, 0.0]);
     let (stance, x) = ball.lying(FLOOR, 0.0, start);
-    let run = Simulation::of(&ball).stepper(Dop853).tolerance(1e-12).run(stance, x, 0.0..4.0).unwrap();
+    let run = Simulation::of(&ball).stepper(Auto::from(Dop853)).tolerance(1e-12).run(stance, x, 0.0..4.0).unwrap();
     let leave = &run.trajectory.jumps()[0];
     assert!(matches!(leave.edge(), Some(Event::Leave(_))));
     assert!((leave.after.position[1] / radius - 2.0 / 3.0 * off.cos()).abs() < 1e-9, "{leave:?}");
@@ -114,7 +114,11 @@ fn curved_ground() {
 
     let bowl = Flyer::new(gravity(g), Round::bowl(vector![0.0, 0.0], radius).unwrap(), cor(0.5)).unwrap();
     let start = Moving::new(vector![0.3, 0.0], vector![0.0, 0.0]);
-    let run = Simulation::of(&bowl).stepper(Dop853).tolerance(1e-11).run(Stance::FLIGHT, start, 0.0..20.0).unwrap();
+    let run = Simulation::of(&bowl)
+        .stepper(Auto::from(Dop853))
+        .tolerance(1e-11)
+        .run(Stance::FLIGHT, start, 0.0..20.0)
+        .unwrap();
     assert!(matches!(run.end.mode, Stance::Slide { .. }), "{:?}", run.end.mode);
     assert!((run.end.state.position.norm() - radius).abs() < 1e-8);
 }
@@ -163,7 +167,7 @@ fn a_ball_that_rolls_off_a_hill() {
         let ball = Flyer::gripped(gravity(g), hill, cor(0.5), grip).unwrap();
         let start = Moving::new(vector![0.0, size], vector![0.4, 0.0]).spinning(-0.4 / radius);
         let (stance, x) = ball.lying(FLOOR, 0.0, start);
-        Simulation::of(&ball).stepper(Dop853).tolerance(1e-13).run(stance, x, 0.0..1.0).unwrap()
+        Simulation::of(&ball).stepper(Auto::from(Dop853)).tolerance(1e-13).run(stance, x, 0.0..1.0).unwrap()
     };
     let hill = Round::obstacle(vector![0.0, 0.0, 0.0], size).unwrap();
     let ball = Flyer::gripped(gravity(g), hill, cor(0.5), grip).unwrap();
@@ -174,7 +178,7 @@ fn a_ball_that_rolls_off_a_hill() {
     // Down a meridian that no axis knows.
     let down = vector![0.6, 0.8, 0.0];
     let (stance, x) = across(vector![0.0, 0.0, size], down * 0.4);
-    let run = Simulation::of(&ball).stepper(Dop853).tolerance(1e-13).run(stance, x, 0.0..1.0).unwrap();
+    let run = Simulation::of(&ball).stepper(Auto::from(Dop853)).tolerance(1e-13).run(stance, x, 0.0..1.0).unwrap();
     let is = |event: Option<&Event<3>>, wanted: &str| event.is_some_and(|e| format!("{e:?}").starts_with(wanted));
     let when = |wanted: &str| run.trajectory.jumps().iter().find(|j| is(j.edge().as_ref(), wanted)).unwrap().t();
     let flat = |wanted: &str| {
@@ -189,7 +193,7 @@ fn a_ball_that_rolls_off_a_hill() {
 
     // Across the hill the push turns on the way.
     let (stance, x) = across(vector![0.6, 0.0, 0.8], vector![-0.3, 0.9, 0.225]);
-    let best = Simulation::of(&ball).stepper(Dop853).tolerance(1e-13).run(stance, x, 0.0..0.8).unwrap();
+    let best = Simulation::of(&ball).stepper(Auto::from(Dop853)).tolerance(1e-13).run(stance, x, 0.0..0.8).unwrap();
     assert!(
         matches!(best.end.mode, Stance::Flight { .. }) && best.trajectory.jumps().len() == 3,
         "{:?}",
@@ -198,8 +202,8 @@ fn a_ball_that_rolls_off_a_hill() {
     let off = |x: &Moving<3, Vector3<f64>>| {
         (x.velocity - best.end.state.velocity).norm() + (x.spin - best.end.state.spin).norm() * radius
     };
-    let explicit = Simulation::of(&ball).stepper(Tsit5).tolerance(1e-10).run(stance, x, 0.0..0.8).unwrap();
-    let stiff = Simulation::of(&ball).stepper(Rodas5P).tolerance(1e-8).run(stance, x, 0.0..0.8).unwrap();
+    let explicit = Simulation::of(&ball).stepper(Auto::from(Tsit5)).tolerance(1e-10).run(stance, x, 0.0..0.8).unwrap();
+    let stiff = Simulation::of(&ball).stepper(Auto::from(Rodas5P)).tolerance(1e-8).run(stance, x, 0.0..0.8).unwrap();
     assert!(
         off(&explicit.end.state) < 1e-8 && off(&stiff.end.state) < 1e-6,
         "{} {}",

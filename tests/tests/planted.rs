@@ -10,6 +10,7 @@
 
 use saltus::cross::{Start, first_fall};
 use saltus::{Edge, Entry, Hybrid, Simulation};
+use saltus_instances as _;
 
 /// A generator of numbers that look random and are the same in every run (S. Vigna's `splitmix64`).
 struct Random(u64);

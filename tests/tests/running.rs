@@ -10,6 +10,7 @@ use saltus::{
     About, Automaton, CheckpointOf, Clock, Coords, Edges, Hybrid, Jump, JumpOf, Observer, Piece, Refusal, Simulation,
     State, Stop, TrajectoryOf,
 };
+use saltus_instances as _;
 use serde::{Deserialize, Serialize};
 
 /// A ball with quadratic drag, risen and fallen in two smooth modes, that keeps 0.9 of its speed.

@@ -6,6 +6,7 @@
 use proptest::prelude::*;
 use roxmltree::{Document, Node};
 use saltus::{Clock, Coords, Hybrid, RunOf, Simulation, State};
+use saltus_instances as _;
 use saltus_plot::{Background, Panels, Phase, PlotError};
 
 type Point = (f64, f64);

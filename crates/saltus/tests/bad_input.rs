@@ -7,6 +7,7 @@ use proptest::prelude::*;
 use saltus::{
     Automaton, Clock, Clocks, Edges, Error, ErrorKind, Hybrid, Limit, Polynomial, Refusal, Simulation, Solution, Stop,
 };
+use saltus_instances as _;
 
 /// What a model gives in place of a number, from some time on.
 const BAD: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];

@@ -6,6 +6,7 @@ use std::ops::ControlFlow;
 
 use proptest::prelude::*;
 use saltus::{About, Automaton, Clock, Clocks, Edges, Entry, ErrorKind, Hybrid, JumpOf, Observer, Refusal, Simulation};
+use saltus_instances as _;
 
 /// Clocks that count, and one guard of time.
 struct Clocked {

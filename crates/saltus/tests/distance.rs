@@ -4,6 +4,7 @@
 
 use saltus::nalgebra::{Vector2, vector};
 use saltus::{Closeness, Dop853, Hybrid, Polynomial, RunOf, Simulation};
+use saltus_instances as _;
 
 type Ball = Hybrid<'static, Vector2<f64>>;
 

@@ -8,6 +8,7 @@ use std::f64::consts::PI;
 use proptest::prelude::*;
 use saltus::cross::Doubt;
 use saltus::{Certificate, Entry, Hybrid, Simulation};
+use saltus_instances as _;
 
 /// The times of the jumps where `guard` of time falls, and of the doubts that its continuity
 /// leaves.

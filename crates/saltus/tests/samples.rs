@@ -4,6 +4,7 @@
 
 use proptest::prelude::*;
 use saltus::{Clock, Coords, Hybrid, JumpTable, Sample, Sampler, SamplingError, Simulation};
+use saltus_instances as _;
 
 type Rows = Vec<Sample<&'static str, f64>>;
 

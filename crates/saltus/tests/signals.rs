@@ -4,6 +4,7 @@
 
 use proptest::prelude::*;
 use saltus::{Hybrid, Signal, SignalError, Simulation};
+use saltus_instances as _;
 
 type Samples = Vec<(f64, f64)>;
 

@@ -17,6 +17,17 @@ use methods::methods;
 /// Runs the one mode "flow" of `system` with equal relative and absolute tolerance.
 fn run<'b, S: State>(
     system: &Hybrid<'b, S>,
+    stepper: impl Into<Auto>,
+    tolerance: f64,
+    x: S,
+    end: f64,
+) -> RunOf<Hybrid<'b, S>> {
+    run_by(system, stepper.into(), tolerance, x, end)
+}
+
+/// The same by a method of its own type.
+fn run_by<'b, S: State>(
+    system: &Hybrid<'b, S>,
     stepper: impl Stepper,
     tolerance: f64,
     x: S,
@@ -61,7 +72,7 @@ fn arenstorf() -> (Hybrid<'static, Vector4<f64>>, Vector4<f64>) {
 }
 
 /// After one period: how far from the start, and the cost.
-fn orbit(stepper: impl Stepper, tolerance: f64) -> (f64, (u64, u64, u64)) {
+fn orbit(stepper: impl Into<Auto>, tolerance: f64) -> (f64, (u64, u64, u64)) {
     let (system, start) = arenstorf();
     let run = run(&system, stepper, tolerance, start, PERIOD);
     ((run.end.state - start).norm(), cost(&run))
@@ -127,7 +138,7 @@ fn rodas5p_on_robertson() {
         vector![b - a, a - b - c, c]
     });
     let exact = vector![0.208_334_014_970_125_5e-7, 0.833_336_077_033_471_3e-13, 0.999_999_979_166_505];
-    let simulation = Simulation::of(&system).stepper(Rodas5P).tolerance(1e-7).absolute_tolerance(1e-17);
+    let simulation = Simulation::of(&system).stepper(Auto::from(Rodas5P)).tolerance(1e-7).absolute_tolerance(1e-17);
     let run = simulation.run("flow", vector![1.0, 0.0, 0.0], 0.0..1e11).unwrap();
     let error = (run.end.state - exact).component_div(&exact).amax();
     assert!(error < 4e-8, "{error:e}");
@@ -158,8 +169,8 @@ fn a_method_by_name_is_that_method() {
             Hybrid::new().mode("flow", |_t, x: &Vector2<f64>| vector![x[1], 1e3 * (1.0 - x[0] * x[0]) * x[1] - x[0]]);
         for tolerance in [1e-5, 1e-9] {
             let (own, named, free) = (
+                run_by(&system, method, tolerance, vector![2.0, 0.0], 1.0),
                 run(&system, method, tolerance, vector![2.0, 0.0], 1.0),
-                run(&system, method.into(), tolerance, vector![2.0, 0.0], 1.0),
                 run(&system, Auto::new(), tolerance, vector![2.0, 0.0], 1.0),
             );
             assert_eq!((own.end.state, own.end.stats), (named.end.state, named.end.stats));
@@ -215,7 +226,11 @@ fn a_crossing_costs_one_more_step() {
         .mode("left", |_t, x| vector![x[1], -x[0]])
         .edge("left", "right", |_t, x| -x[0], |_t, x| *x)
         .affine();
-    let run = Simulation::of(&oscillator).stepper(Dop853).tolerance(1e-8).absolute_tolerance(1e-8).most_jumps(1000);
+    let run = Simulation::of(&oscillator)
+        .stepper(Auto::from(Dop853))
+        .tolerance(1e-8)
+        .absolute_tolerance(1e-8)
+        .most_jumps(1000);
     let run = run.run("right", vector![1.0, 0.0], 0.0..f64::INFINITY).unwrap();
     assert_eq!(cost(&run), (5498, 0, 99_627));
 }
@@ -246,7 +261,7 @@ fn a_ball_comes_to_rest_on_every_stepper() {
 
 #[test]
 fn dense_output_is_as_good_as_the_tolerance() {
-    fn check(stepper: impl Stepper, tolerance: f64, bound: f64) {
+    fn check(stepper: impl Into<Auto>, tolerance: f64, bound: f64) {
         let system = Hybrid::new().mode("flow", |t, x: &Vector2<f64>| vector![x[1] - t.sin() * 0.1, -x[0]]);
         let exact = |t: f64| {
             // x'' = -x - 0.1 cos t, from (1, 0).

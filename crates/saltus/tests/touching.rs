@@ -7,6 +7,7 @@ use std::f64::consts::PI;
 
 use saltus::nalgebra::SVector;
 use saltus::{Hybrid, Simulation, Stop};
+use saltus_instances as _;
 
 /// Displacements of five balls that hang side by side, in ball diameters, then their velocities.
 type Balls = SVector<f64, 10>;

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use saltus::nalgebra::vector;
-use saltus::step::{Dop853, Rodas5P, Stepper, Tsit5};
+use saltus::step::{Auto, Dop853, Rodas5P, Tsit5};
 use saltus::{Entry, Hybrid, Jump, JumpOf, Observer, Piece, Simulation};
 
 use super::{
@@ -143,7 +143,7 @@ fn crossings_on_the_ends_of_fixed_steps() {
     }
 }
 
-fn oscillator<M: Stepper>(stepper: M) -> Vec<(f64, Way)> {
+fn oscillator(stepper: Auto) -> Vec<(f64, Way)> {
     let automaton = watched(|_t, x: &Flight| vector![x[1], -x[0]], |_t, x| x[0] - 0.999);
     let run = Simulation::of(&automaton).stepper(stepper).tolerance(1e-9).run("run", vector![0.0, 1.0], 0.0..20.0);
     crossings(&run.unwrap())
@@ -160,7 +160,7 @@ fn every_method_finds_the_same_crossings() {
             [(whole + first, Up), (whole + std::f64::consts::PI - first, Down)]
         })
         .collect();
-    for found in [oscillator(Tsit5), oscillator(Dop853), oscillator(Rodas5P)] {
+    for found in [Tsit5.into(), Dop853.into(), Rodas5P.into()].map(oscillator) {
         assert_crossings(&found, &expected, 1e-5);
     }
 }

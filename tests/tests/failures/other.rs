@@ -1,12 +1,12 @@
 //! Dense output at the ends of steps, and runs side by side.
 
 use saltus::nalgebra::vector;
-use saltus::step::{Dop853, Rodas5P, Stepper, Tsit5};
+use saltus::step::{Auto, Dop853, Rodas5P, Tsit5};
 use saltus::{Clock, Hybrid, Simulation, Stats};
 
 use super::{Flight, G, PATHS, ball};
 
-fn largest_gap<M: Stepper>(stepper: M) -> f64 {
+fn largest_gap(stepper: Auto) -> f64 {
     let automaton = Hybrid::new().mode("run", |_t, x: &Flight| vector![x[1], (1.0 - x[0] * x[0]) * x[1] - x[0]]);
     let run = Simulation::of(&automaton).stepper(stepper).run("run", vector![2.0, 0.0], 0.0..10.0).unwrap();
     let pieces: Vec<_> = run.trajectory.pieces(0).collect();
@@ -21,7 +21,7 @@ fn largest_gap<M: Stepper>(stepper: M) -> f64 {
 /// rounding.
 #[test]
 fn the_dense_output_meets_the_steps() {
-    for gap in [largest_gap(Tsit5), largest_gap(Dop853), largest_gap(Rodas5P)] {
+    for gap in [Tsit5.into(), Dop853.into(), Rodas5P.into()].map(largest_gap) {
         assert!(gap <= f64::EPSILON, "{gap:e}");
     }
 }
@@ -57,7 +57,11 @@ fn a_stiff_run_restarts_cheaply() {
             Some(kick) => automaton.clock("run", "run", Clock::every(0.1), move |_t, x| x + kick),
             None => automaton,
         };
-        let run = Simulation::of(&automaton).stepper(Rodas5P).tolerance(1e-6).run("run", 1.0, 0.0..10.05).unwrap();
+        let run = Simulation::of(&automaton)
+            .stepper(Auto::from(Rodas5P))
+            .tolerance(1e-6)
+            .run("run", 1.0, 0.0..10.05)
+            .unwrap();
         assert_eq!(run.end.stats.jumps, if kick.is_some() { 100 } else { 0 });
         run.end.stats
     };
