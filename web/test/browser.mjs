@@ -43,8 +43,10 @@ export async function on(act, { url = pathToFileURL(html).href, ready = true, ..
   }
 }
 
-/// Gives the page files `{ name, bytes }`, and waits for its answer.
+/// Gives the page files `{ name, bytes }`, and waits for its answer; what it was asked before is
+/// answered first, for that answer would be taken for this one.
 export async function give(page, files) {
+  await page.waitForFunction(() => document.getElementById("result").getAttribute("aria-busy") === "false");
   await page.evaluate(() => { document.getElementById("said").textContent = ""; });
   await page.setInputFiles("#files", files.map(({ name, bytes }) => ({ name, mimeType: "", buffer: Buffer.from(bytes) })));
   await page.waitForFunction(() => document.getElementById("said").textContent !== "" && document.getElementById("result").getAttribute("aria-busy") === "false");
