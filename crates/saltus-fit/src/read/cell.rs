@@ -349,13 +349,16 @@ pub(super) fn dated(cell: &str) -> Option<(&str, &str)> {
 }
 
 /// The seconds in a cell that reads like a stopwatch, `0:01.25` or `1:02:03,4`; `None` if it does
-/// not.
+/// not, as where a fourth part counts what nobody states, frames or hundredths.
 pub(super) fn clock(cell: &str) -> Option<f64> {
     let mut seconds = 0.0;
     if !cell.contains(':') {
         return None;
     }
     let time = dated(cell).map_or(cell.trim(), |(_, time)| time);
+    if time.matches(':').count() > 2 {
+        return None;
+    }
     for part in time.split(':') {
         let digits = part.starts_with(|c: char| c.is_ascii_digit());
         seconds = 60.0 * seconds + part.replace(',', ".").parse::<f64>().ok().filter(|_| digits)?;
@@ -453,5 +456,6 @@ mod tests {
         assert_eq!(read("1,234", true), Cell::Wrong(Fault::Comma));
         assert!(matches!(read("30,5", true), Cell::Number(m) if m.value == 30.5));
         assert_eq!([clock("0:01.25"), clock("1:02:03,5"), clock("12.5")], [Some(1.25), Some(3723.5), None]);
+        assert_eq!(clock("0:00:01:25"), None);
     }
 }

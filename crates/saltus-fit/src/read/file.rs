@@ -12,6 +12,7 @@ use super::grid::{Grid, View};
 use super::heading::{Heading, What};
 use super::heard;
 use super::json;
+use super::phrases::Phrase;
 use super::programs::{self, Recognised};
 use super::region::{self, Region};
 use super::rows::sifted;
@@ -214,7 +215,7 @@ fn one(region: &mut Region<'_>, options: &ReadOptions, metadata: Metadata) -> Re
     let doubts = [
         said::unsaid(region, &columns, options),
         said::mixed_units(region, &columns),
-        said::of_another_motion(region),
+        said::of_another_motion(region, &columns),
         said::rival(region, &columns, options),
         said::of_two_ends(&columns),
         said::repeated(region, &columns),
@@ -262,9 +263,18 @@ fn titled(region: &Region<'_>, table: &mut Table) {
         let unread = |atom: &Atom| exact(*atom) || slip(*atom);
         heading.turns_readings() && heading.turned_by().iter().any(unread)
     };
-    let turned = |text: &str| match clause::frame_rate(text) {
-        Some(_) => turns(&text.replace("rate", "")),
-        None => turns(text),
+    // What a rule of measuring is called turns nothing: `acc. to ITF procedure`.
+    let by_rule = |text: &str| {
+        let lower = text.to_lowercase();
+        let at = Phrase::According.all().iter().find_map(|rule| Some((lower.find(rule)?, rule.len())));
+        let (at, long) = at.filter(|_| lower.len() == text.len())?;
+        let after = text[at + long..].trim_start().split_once(' ').map_or("", |(_, after)| after);
+        Some(format!("{}{after}", &text[..at]))
+    };
+    let turned = |text: &str| match (clause::frame_rate(text), by_rule(text)) {
+        (Some(_), _) => turns(&text.replace("rate", "")),
+        (None, Some(text)) => turns(&text),
+        (None, None) => turns(text),
     };
     if region.header.iter().any(|name| turned(name)) {
         return;
@@ -329,7 +339,11 @@ fn sheets(name: &str, parts: Vec<Part>, options: &ReadOptions) -> Result<Table, 
     let known: Vec<String> = parts.iter().map(|part| part.name.trim().to_owned()).collect();
     // phyphox' stopwatches write the same events three times; only in one sheet are they all.
     let all = known.iter().any(|n| stem(n) == "All");
-    let (mut found, mut aside, mut first) = (Vec::new(), Vec::new(), None);
+    // What is drawn stands elsewhere, if it does.
+    let of_chart = |label: &str| folded(label).split(|c: char| !c.is_alphanumeric()).any(|word| Phrase::Chart.is(word));
+    let (drawn, mut parts): (Vec<Part>, Vec<Part>) = parts.into_iter().partition(|part| of_chart(&part.name));
+    parts.extend(drawn);
+    let (mut found, mut aside, mut first): (Vec<(String, Table)>, Vec<_>, _) = (Vec::new(), Vec::new(), None);
     for part in parts {
         let label = part.name.trim().to_owned();
         let why = match &options.sheet {
@@ -344,9 +358,12 @@ fn sheets(name: &str, parts: Vec<Part>, options: &ReadOptions) -> Result<Table, 
             aside.push((label, why));
             continue;
         }
-        match sheet(name, &part, options)? {
-            Ok(table) => found.push((label, table)),
-            Err(problem) => {
+        let drawn = options.sheet.is_none() && of_chart(&label) && found.iter().any(|(other, _)| !of_chart(other));
+        match sheet(name, &part, options) {
+            Ok(Ok(_)) | Err(_) if drawn => aside.push((label, Why::Elsewhere)),
+            Err(error) => return Err(error),
+            Ok(Ok(table)) => found.push((label, table)),
+            Ok(Err(problem)) => {
                 aside.push((label, Why::NoTable));
                 first = first.or(Some(problem));
             }

@@ -4,6 +4,7 @@
 use quick_xml::Reader;
 use quick_xml::events::Event;
 
+use super::forms;
 use super::limits::MANY;
 use super::sheet::{Content, Part};
 use crate::error::TableError;
@@ -46,7 +47,11 @@ const KINDS: [(&[&str], &str, &str); 14] = [
         "JSON without records of numbers, or longer than 16 MB",
         "write its numbers as a table, a name above each column, and save it as CSV",
     ),
-    (&["sql"], "SQL", "export the rows as CSV, such as by SELECT into a file; give that file"),
+    (
+        &["sql"],
+        "SQL that inserts no rows of a table, or of several",
+        "export the rows as CSV, such as by SELECT into a file; give that file",
+    ),
     (&["xml"], "XML without records of numbers", "export the table as CSV; give that file"),
     (&["xlsb"], "a workbook of a kind that is not read", "save it as .xlsx or as CSV"),
 ];
@@ -75,7 +80,11 @@ const BEGIN: usize = 4000;
 pub(super) fn refused(name: &str, bytes: &[u8]) -> Option<TableError> {
     let kind = kind(name, bytes);
     let (_, what, help) = KINDS.iter().find(|(endings, _, _)| endings.contains(&&*kind))?;
-    // A table that only has the name of something else is a table.
+    // A table that only has the name of something else is a table, and so are rows that are
+    // inserted.
+    if kind == "sql" && forms::dumped(&String::from_utf8_lossy(bytes)).is_some() {
+        return None;
+    }
     let table = bytes.starts_with(b"PK") && !matches!(&*kind, "docx" | "odt" | "xlsb" | "numbers");
     (!table).then(|| TableError::new(name, format!("this is {what}, and no table")).help(*help))
 }

@@ -3,12 +3,15 @@
 //! and a line stays a line.
 
 mod blocks;
+mod counted;
 mod noted;
+mod printed;
 mod sentences;
 mod values;
 mod wiki;
 
 pub(super) use blocks::bulleted;
+pub(super) use printed::{dumped, indexed};
 use values::{LIST, length, listed_numbers, listed_values, named_list};
 
 use super::cell::{self, Cell};
@@ -32,11 +35,13 @@ pub(super) fn table(text: &str) -> Option<String> {
         blocks::led,
         blocks::table,
         blocks::records,
+        printed::scripted,
         noted::noted,
         listed,
         headed,
         patterned,
         sentences::table,
+        counted::table,
     ];
     forms.iter().find_map(|form| form(text))
 }
@@ -230,10 +235,29 @@ fn measured(line: &str) -> Option<(&str, &str)> {
     (unit && words).then_some((name, last.number))
 }
 
+/// A line of LaTeX without what is struck out in it, which was withdrawn by who wrote it.
+fn kept(line: &str) -> String {
+    let mut found = line.to_owned();
+    while let Some((at, from)) = STRUCK.iter().find_map(|c| found.find(c).map(|at| (at, at + c.len()))) {
+        let end = found[from..].find('}').map_or(found.len(), |end| from + end + 1);
+        found.replace_range(at..end, "");
+    }
+    found
+}
+
+/// Commands of LaTeX that strike out what follows.
+const STRUCK: [&str; 6] = [r"\sout{", r"\xout{", r"\st{", r"\cancel{", r"\bcancel{", r"\xcancel{"];
+
 /// A table of LaTeX, whose rows end in `\\` and whose cells are parted by `&`, with tabs in their
 /// place; `None` if it is none. A line stays a line.
 fn latex(text: &str) -> Option<String> {
+    // A remark goes from its sign to the end of the line.
+    let said = |line: &str| {
+        let sign = line.match_indices('%').map(|(at, _)| at).find(|&at| !line[..at].ends_with('\\'));
+        line[..sign.unwrap_or(line.len())].to_owned()
+    };
     let row = |line: &str| {
+        let line = kept(&said(line));
         let (cells, after) = line.rsplit_once(r"\\")?;
         let ends = after.trim().is_empty() || after.trim_start().starts_with('\\');
         (ends && cells.contains('&')).then(|| cells.replace('&', "\t"))

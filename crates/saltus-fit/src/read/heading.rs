@@ -247,11 +247,17 @@ impl Heading {
         self.has(Atom::Top) || self.has(Atom::Max) && (self.has(Atom::Height) || !time)
     }
 
-    /// One of the coordinates that columns of one name hold, `ball_x` beside `ball_y`.
+    /// One of the coordinates that columns of one name hold, `ball_x` beside `ball_y`, or of one
+    /// number, `X1` beside `Y1`.
     pub(super) fn coordinate(text: &str, header: &[String]) -> Option<Self> {
         let parted = |text: &str| {
             let end = text.find(['(', '[']).unwrap_or(text.len());
             let name = text[..end].trim_end();
+            let sign = name.trim_end_matches(|c: char| c.is_ascii_digit());
+            if let (true, "x" | "y" | "X" | "Y") = (sign.len() < name.len(), sign) {
+                let letter = sign.chars().next()?;
+                return Some((name[sign.len()..].to_owned(), letter, format!("{letter} {}", &text[end..])));
+            }
             let letter = name.chars().next_back().filter(|c| matches!(c, 'x' | 'y' | 'X' | 'Y'))?;
             let stem = name.strip_suffix(letter)?;
             // What a colon ends is the name of the run.

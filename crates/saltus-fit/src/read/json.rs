@@ -8,9 +8,11 @@ use std::fmt;
 
 use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 
+use super::cell::{self, Cell};
 use super::heading::{Heading, Meaning};
 use super::limits::{self, CELLS, MANY};
 use super::sheet::{Content, Part};
+use super::units::{Dimension, Unit};
 
 /// A value, its members in the order in which they stand.
 enum Node {
@@ -200,15 +202,75 @@ fn tables(name: &str, node: &Node, above: &str, found: &mut Vec<Part>) {
     // The only table within a value is called as that is.
     let only = !name.is_empty() && columns.is_empty() && inner().count() == 1;
     for (own, member) in inner() {
-        tables(if only { name } else { own }, member, &format!("{above}{stated}"), found);
+        let of_both = matches!(member, Node::List(list) if nested(own, list).is_some());
+        tables(if only && !of_both { name } else { own }, member, &format!("{above}{stated}"), found);
     }
     // Lists of the same names are trials, or are called by their first words.
     let Node::List(list) = node else { return };
+    if let Some(rows) = nested(name, list) {
+        let name = if name.is_empty() { format!("table {}", found.len() + 1) } else { name.to_owned() };
+        found.push(Part { name, hidden: false, content: Content::Cells(format!("{above}{rows}")) });
+        return;
+    }
     for (n, member) in list.iter().enumerate() {
-        let words = |cell: &&str| cell.contains(char::is_alphabetic);
+        // A length, or a time, is no name.
+        let measured = |cell: &str| {
+            let unit = |unit: Unit| unit.dimension != Dimension::Other;
+            matches!(cell::read(cell, false), Cell::Number(m) if m.unit.is_some_and(unit))
+        };
+        let words = |cell: &&str| cell.contains(char::is_alphabetic) && !measured(cell);
         let called = member.members().iter().filter_map(|(_, node)| node.cell()).find(words);
         tables(&called.map_or_else(|| format!("trial {}", n + 1), str::to_owned), member, above, found);
     }
+}
+
+/// Names with their cells.
+type Cells = Vec<(String, String)>;
+
+/// A record that holds a list: its own cells, the name of the list, and the cells of its records.
+type Holder = (Cells, String, Vec<Cells>);
+
+/// Records called `name` that hold cells and one list of records each, of which a member is called
+/// as one of theirs: `<drop height="1 m"><bounce height="0.64 m"/></drop>`. A row for each record
+/// of the lists, whose columns of both are called by both names; the records are trials. `None`
+/// where no name is in both, for then each says what it is by itself.
+fn nested(name: &str, list: &[Node]) -> Option<String> {
+    let one = |node: &'_ Node| -> Option<Holder> {
+        let own = node.members().iter().filter_map(|(name, node)| Some((name.clone(), node.cell()?.to_owned())));
+        let mut inner = node.members().iter().filter(|(_, node)| node.cell().is_none());
+        let (of, records) = inner.next().filter(|_| inner.next().is_none())?;
+        let cells = |record: &[(String, Node)]| {
+            record.iter().map(|(name, node)| Some((name.clone(), node.cell()?.to_owned()))).collect::<Option<Vec<_>>>()
+        };
+        let rows = records.records()?.into_iter().map(cells).collect::<Option<Vec<_>>>()?;
+        Some((own.collect(), of.clone(), rows))
+    };
+    let all: Vec<_> = list.iter().map(one).collect::<Option<_>>()?;
+    let (first, of, rows) = all.first()?;
+    let names = |cells: &[(String, String)]| cells.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
+    let (outer, inner) = (names(first), names(rows.first()?));
+    let same = |(own, by, rows): &Holder| names(own) == outer && by == of && rows.iter().all(|row| names(row) == inner);
+    if all.len() < 2 || name.is_empty() || !all.iter().all(same) || !outer.iter().any(|name| inner.contains(name)) {
+        return None;
+    }
+    // What counts them counts trials, and bounces in these.
+    let counts = |name: &&String| matches!(Heading::parse(name).meaning, Meaning::Number { .. } | Meaning::Trial);
+    let both = |of: &str, own: &String| {
+        if inner.contains(own) && outer.contains(own) { format!("{of} {own}") } else { own.clone() }
+    };
+    let columns = outer.iter().map(|own| if counts(&own) { "-".to_owned() } else { both(name, own) });
+    let within = inner.iter().map(|own| if counts(&own) { "bounce".to_owned() } else { both(of, own) });
+    let names: Vec<String> = std::iter::once("trial".to_owned()).chain(columns).chain(within).collect();
+    let names: Vec<&str> = names.iter().map(|name| if name == "-" { "" } else { name.as_str() }).collect();
+    let mut text = begun(&names, all.iter().map(|(_, _, rows)| rows.len()).sum())?;
+    for (n, (own, _, rows)) in all.iter().enumerate() {
+        for row in rows {
+            let cells = own.iter().map(|(name, cell)| if counts(&name) { "" } else { cell.as_str() });
+            let cells = cells.chain(row.iter().map(|(_, cell)| cell.as_str()));
+            text.push_str(&format!("{}\t{}\n", n + 1, cells.collect::<Vec<_>>().join("\t")));
+        }
+    }
+    Some(text)
 }
 
 /// Members that all hold cells called by the same numbers, `{"drop_m": {"0": 1, "1": 2},

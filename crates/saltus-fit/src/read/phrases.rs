@@ -62,10 +62,18 @@ pub(super) enum Phrase {
     Middle,
     /// A ball came up again.
     Rose,
+    /// Something runs into what follows,
+    Against,
+    /// and comes back from it.
+    Wall,
+    /// What follows is a rule that was kept.
+    According,
+    /// A sheet holds what is drawn from others.
+    Chart,
 }
 
 impl Phrase {
-    const ALL: [(&'static str, Self); 27] = [
+    const ALL: [(&'static str, Self); 31] = [
         ("missing", Self::Missing),
         ("about", Self::About),
         ("half", Self::Half),
@@ -93,6 +101,10 @@ impl Phrase {
         ("top", Self::Top),
         ("middle", Self::Middle),
         ("rose", Self::Rose),
+        ("against", Self::Against),
+        ("wall", Self::Wall),
+        ("according", Self::According),
+        ("chart", Self::Chart),
     ];
 
     /// The phrases of this kind, in the order of the file.

@@ -49,6 +49,9 @@ pub(super) fn tables<'a>(
     if first(0).eq_ignore_ascii_case("frame") && position(view, 0, "y1").is_some() {
         return imagej(view, options);
     }
+    if let Some(found) = by_hand(view) {
+        return Ok(found);
+    }
     if let Some(found) = tracker(view, options) {
         return Ok(found);
     }
@@ -128,7 +131,7 @@ fn given<'a>(view: View<'a>, names: &[String]) -> Region<'a> {
 }
 
 /// A track of labels as Audacity writes it, `start, end, text` a line without a header: the labels
-/// stand at the contacts.
+/// stand at the contacts, or those that say so where another lasts longer than one.
 fn labels(view: View<'_>) -> Option<Region<'_>> {
     // Labels may count the contacts.
     let counts = (0..view.rows()).all(|row| view.cell(row, 2).parse() == Ok(row + 1));
@@ -142,9 +145,24 @@ fn labels(view: View<'_>) -> Option<Region<'_>> {
                 .is_some_and(|(start, end)| start <= end && end - start < LABEL)
     };
     let rows = view.rows();
-    (view.grid.delimiter == b'\t' && rows > 2 && (0..rows).all(label)).then(|| {
+    let contacts = |row: &usize| {
+        let heading = Heading::parse(view.cell(*row, 2));
+        heading.unknown.is_empty() && heading.has(Atom::Impact) && !heading.turns()
+    };
+    let spans = |row: usize| {
+        view.width(row) == 3 && view.number(row, 0).zip(view.number(row, 1)).is_some_and(|(start, end)| start <= end)
+    };
+    let named: Vec<usize> = (0..rows).filter(contacts).collect();
+    let some = named.len() > 2 && (0..rows).all(spans) && named.iter().all(|&row| label(row));
+    let all = (0..rows).all(label);
+    let used = if all { (0..rows).collect() } else { named };
+    (view.grid.delimiter == b'\t' && rows > 2 && (some || all)).then(|| {
         let header = vec!["time_s".to_owned(), String::new(), String::new()];
-        Region { given: true, ..Region::new(view, header, 0, (0..rows).collect()) }
+        let mut region = Region { given: true, ..Region::new(view, header, 0, used.clone()) };
+        let others = (0..rows).filter(|row| !used.contains(row));
+        let aside = |row: usize| LeftAside::new(Part::Row, view.cell(row, 2), Why::Other).at(view.line(row, 0));
+        region.aside.extend(others.map(aside));
+        region
     })
 }
 
@@ -174,6 +192,25 @@ fn imagej<'a>(view: View<'a>, options: &ReadOptions) -> Result<Recognised<'a>, T
     };
     first.aside.append(&mut aside);
     Ok(Recognised { program: Some(Program::ImageJ), regions, tracks: true })
+}
+
+/// What `ImageJ` writes of points that were clicked at, one a frame: `Track n°`, `Slice n°`, `X`,
+/// `Y` in pixels, and the brightness there, `Pixel Value`. `None` where it is none of it.
+fn by_hand(view: View<'_>) -> Option<Recognised<'_>> {
+    let begins = |name: &str| view.cells(0).position(|cell| cell.to_lowercase().starts_with(name));
+    let (track, frame, y) = (begins("track n")?, begins("slice n")?, position(view, 0, "y")?);
+    begins("pixel value")?;
+    let rows: Vec<usize> = (1..view.rows()).filter(|&row| view.is_number(row, y)).collect();
+    let mut tracks: Vec<&str> = rows.iter().map(|&row| view.cell(row, track)).collect();
+    tracks.dedup();
+    let region = |name: &&str| {
+        let own = rows.iter().copied().filter(|&row| view.cell(row, track) == *name).collect();
+        let header = picked(view.width(0), &[(frame, "frame"), (y, "y")]);
+        let label = if tracks.len() > 1 { format!("track {name}") } else { String::new() };
+        Region { label, units: (None, Some(Unit::PIXEL)), chosen: true, ..Region::new(view, header, 0, own) }
+    };
+    let regions = tracks.iter().map(region).collect();
+    Some(Recognised { program: Some(Program::ImageJ), regions, tracks: true })
 }
 
 /// Names for the columns `chosen`, and none for the others.

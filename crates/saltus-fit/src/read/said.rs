@@ -17,6 +17,20 @@ use crate::error::TableError;
 use crate::finding::Doubt;
 use crate::statistics::median;
 
+/// Whether a text names a wall, or a bumper.
+fn names_wall(text: &str) -> bool {
+    split(text).iter().any(|word| Phrase::Wall.is(&folded(&word.text)))
+}
+
+/// Whether a text says that a ball runs against a wall.
+fn hits_wall(text: &str) -> bool {
+    let words = split(text);
+    let is = |word: &Word, phrase: Phrase| phrase.is(&folded(&word.text));
+    let against = words.iter().position(|word| is(word, Phrase::Against));
+    let wall = against.is_some_and(|at| words[at..].iter().any(|word| is(word, Phrase::Wall)));
+    wall && words.iter().any(|word| word.is(Atom::Label))
+}
+
 /// Whether a text says that something bounces, or is dropped.
 fn says(text: &str) -> bool {
     if Heading::parse(text).cor {
@@ -55,19 +69,39 @@ fn texts<'a>(region: &'a Region<'_>) -> impl Iterator<Item = &'a str> {
 }
 
 /// The doubt whether a table is of a bounce that speaks of another motion in which heights, or
-/// speeds, fall alike: a pendulum, a ramp, a jump on a rope.
-pub(super) fn of_another_motion(region: &Region<'_>) -> Option<Doubt> {
+/// speeds, fall alike: a pendulum, a ramp, a jump on a rope. Speeds that turn round at a wall that
+/// it names, or a bumper, are of an impact, whatever moves.
+pub(super) fn of_another_motion(region: &Region<'_>, columns: &Columns) -> Option<Doubt> {
+    if turned_round(region, columns) && texts(region).any(names_wall) {
+        return None;
+    }
     let other = |text: &&str| split(text).iter().any(|word| word.is(Atom::Motion));
     texts(region).find(other).map(|text| Doubt::Motion { text: shown(text) })
 }
 
+/// Whether speeds before and after turn round in every row, of which there are several: what meets
+/// nothing keeps its sign.
+fn turned_round(region: &Region<'_>, columns: &Columns) -> bool {
+    let speeds = columns.values().filter(|(_, _, v)| v.what == What::Speed && v.role == Role::Reading);
+    let speeds: Vec<usize> = speeds.map(|(n, _, _)| n).collect();
+    let [before, after] = speeds.as_slice() else { return false };
+    let number = |row: usize, n: usize| match region.view.read(row, n) {
+        Cell::Number(m) => Some(m.value),
+        _ => None,
+    };
+    let turns = |&row: &usize| Some(number(row, *before)? * number(row, *after)? < 0.0);
+    let turns: Vec<bool> = region.rows.iter().filter_map(turns).collect();
+    turns.len() >= ALIKE && turns.iter().all(|turns| *turns)
+}
+
 /// The doubt whether readings are of a bounce at all, where nothing in the table says so: heights,
 /// speeds, energies and times may be of anything, but heights beside times of contacts, which fall
-/// as a ball does or do not fit. Answered for is what was chosen by an option, and a name that is
-/// spelt as the documentation spells it, `height_cm`; `h0` beside `h1` are signs of a bounce.
+/// as a ball does or do not fit, and speeds that turn round. Answered for is what was chosen by an
+/// option, and a name that is spelt as the documentation spells it, `height_cm`; `h0` beside `h1`
+/// are signs of a bounce.
 pub(super) fn unsaid(region: &Region<'_>, columns: &Columns, options: &ReadOptions) -> Option<Doubt> {
     let answered = options.column.is_some() || options.drop.is_some() || options.sheet.is_some();
-    if answered || region.given || region.chosen {
+    if answered || region.given || region.chosen || turned_round(region, columns) {
         return None;
     }
     let length = |c: &Column| {
@@ -85,7 +119,10 @@ pub(super) fn unsaid(region: &Region<'_>, columns: &Columns, options: &ReadOptio
     let list = |c: &Column, v: &Value| v.what == What::Height && v.at == At::Row && !(timed || released || spelt(c));
     let open = read().find(|(_, c, v)| pair(c, v.at) || if high { list(c, v) } else { v.at != At::Release });
     let parts = || columns.columns.iter().find(|c| c.kind == Of::Share && c.heading.has(Atom::Energy));
-    let column = open.map(|(_, column, _)| column).or_else(parts).filter(|_| !texts(region).any(says))?;
+    // A ball that has one speed before a wall and another after it bounces from it.
+    let fast = read().any(|(_, _, v)| v.what == What::Speed);
+    let told = |text: &str| says(text) || fast && hits_wall(text);
+    let column = open.map(|(_, column, _)| column).or_else(parts).filter(|_| !texts(region).any(told))?;
     Some(Doubt::Unsaid { column: shown(&column.heading.text) })
 }
 

@@ -29,12 +29,21 @@ pub(super) fn text<'a>(name: &str, bytes: &'a [u8]) -> Result<Text<'a>, TableErr
     let old = text.contains('\r') && !text.contains('\n');
     let text = if old { Cow::Owned(text.replace('\r', "\n")) } else { text };
     let text = counted(&text).map_or(text, Cow::Owned);
+    let text = wrapped::timecoded(&text).map_or(text, Cow::Owned);
     let text = match names_in_comment(&text) {
         Some(at) => Cow::Owned([&text[..at], text[at..].trim_start_matches(['#', ' '])].concat()),
         None => text,
     };
     let taken = |text: Cow<'a, str>, form: fn(&str) -> Option<String>| form(&text).map_or(text, Cow::Owned);
-    let around = [wrapped::pictured, wrapped::quoted, wrapped::commented, wrapped::lettered, wrapped::unstamped];
+    let around = [
+        forms::dumped,
+        wrapped::pictured,
+        wrapped::quoted,
+        wrapped::commented,
+        wrapped::lettered,
+        wrapped::unstamped,
+        forms::indexed,
+    ];
     let text = around.into_iter().fold(text, taken);
     // What is typed by hand has no more lines than these; a longer text is of cells side by side.
     let typed = text.lines().nth(MANY).is_none();
@@ -85,7 +94,12 @@ fn names_in_comment(text: &str) -> Option<usize> {
     };
     let numbers = |mark: &str| {
         let found = cells(first, mark);
-        Some(found.len()).filter(|count| *count > 1 && found.iter().all(|cell| cell.parse::<f64>().is_ok()))
+        let comma = mark != ";" && mark != "\t";
+        let number = |cell: &String| match cell::read(cell, comma) {
+            Cell::Number(m) => m.unit.is_none(),
+            _ => cell::clock(cell).is_some(),
+        };
+        Some(found.len()).filter(|count| *count > 1 && found.iter().all(number))
     };
     let (mark, count) = [",", ";", "\t", "  ", " "].iter().find_map(|mark| Some((*mark, numbers(mark)?)))?;
     let names = |mark: &str| {

@@ -35,7 +35,12 @@ pub(super) fn stated(region: &Region<'_>) -> Stated {
     let comments = region.view.grid.comments().take(ROWS).flat_map(|(_, text)| clauses(text));
     let units = comments.flat_map(|text| Unit::listed(text).unwrap_or_else(|| of_clauses(text).into_iter().collect()));
     units.for_each(|unit| found.of_all(unit));
+    // Of rows that are turned over, lines by themselves state the units of all.
     if region.view.across {
+        let grid = region.view.grid;
+        let alone = |row: &usize| (1..grid.width(*row)).all(|n| grid.cell(*row, n).is_empty());
+        let said = (0..grid.rows().min(ROWS)).filter(alone).flat_map(|row| of_clauses(grid.cell(row, 0)));
+        said.for_each(|unit| found.of_all(unit));
         return found;
     }
     let headings = region.header.iter().filter_map(|name| Heading::parse(name).rate);

@@ -155,6 +155,18 @@ impl Unit {
             "mph" | "mi/h" => return Some(Self::of(Dimension::Speed, MILE_AN_HOUR)),
             _ => {}
         }
+        // Words of two units, `metre/second`, are their symbols.
+        let spelt = |word: &str| match meanings(word.trim()) {
+            Some([Atom::Unit(symbol)]) => (*symbol).to_owned(),
+            Some([Atom::Ordinal(2)]) if word.trim() == "second" => "s".to_owned(),
+            _ => word.trim().to_owned(),
+        };
+        if let Some((one, other)) = symbol.split_once('/') {
+            let both = format!("{}/{}", spelt(one), spelt(other));
+            if both != symbol {
+                return Self::parse(&both);
+            }
+        }
         if let Some((_, over)) = JOULES.iter().find(|(name, _)| *name == symbol) {
             return Some(Self { dimension: Dimension::Other, scale: Scale::Energy { times: 1.0, over: *over } });
         }
@@ -186,7 +198,8 @@ mod tests {
         );
         let dimension = |text: &str| Unit::parse(text).map(|u| u.dimension);
         assert_eq!(dimension("ms"), Some(Dimension::Time));
-        assert_eq!(dimension("m/s"), Some(Dimension::Speed));
+        assert_eq!(["m/s", "metre/second", "Meter / s"].map(dimension), [Some(Dimension::Speed); 3]);
+        assert_eq!(["metre/wobble", "trial/second"].map(dimension), [None; 2]);
         assert_eq!(dimension("kg"), Some(Dimension::Other));
         assert_eq!(["", "furlong", "trial"].map(dimension), [None; 3]);
     }

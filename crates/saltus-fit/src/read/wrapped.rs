@@ -67,6 +67,37 @@ pub(super) fn lettered(text: &str) -> Option<String> {
     framed.then(|| text.lines().map(inner).collect::<Vec<_>>().join("\n") + "\n")
 }
 
+/// A text whose times of four parts, `0:00:01:25`, end in hundredths, written as such: what
+/// Kinovea's are, and those of which one is above every count of frames in a second of a time code.
+/// `None` where no cell is such a time, or it may end in frames.
+pub(super) fn timecoded(text: &str) -> Option<String> {
+    let part = |cell: &str| -> Option<(usize, u32)> {
+        let cell = cell.trim();
+        let (time, last) = cell.rsplit_once(':')?;
+        let parts = time.split(':').all(|part| !part.is_empty() && part.chars().all(|c| c.is_ascii_digit()));
+        let digits = last.len() == 2 && last.chars().all(|c| c.is_ascii_digit());
+        (parts && digits && time.matches(':').count() == 2).then(|| Some((time.len(), last.parse().ok()?)))?
+    };
+    let marks = [';', '\t', ',', ' '];
+    let first = |line: &'_ str| line.trim_start().split(marks).next().and_then(part);
+    let lasts: Vec<u32> = text.lines().filter_map(first).map(|(_, last)| last).collect();
+    let program = text.lines().next().is_some_and(|line| line.to_lowercase().contains("kinovea"));
+    if lasts.len() < 2 || !program && lasts.iter().all(|last| *last < FRAMES) {
+        return None;
+    }
+    let spelt = |line: &str| match first(line) {
+        Some((at, _)) => {
+            let bare = line.trim_start();
+            format!("{}.{}", &bare[..at], &bare[at + 1..])
+        }
+        None => line.to_owned(),
+    };
+    Some(text.lines().map(spelt).collect::<Vec<_>>().join("\n") + "\n")
+}
+
+/// A time code counts fewer frames in a second than these.
+const FRAMES: u32 = 60;
+
 /// A text without the time that a monitor, a logger or a chat writes before its lines, and without
 /// who wrote them: `15:21:07.112 -> 64`, `[12.03.24, 14:22] Anna: 64 cm`; of lines that say nothing
 /// but that the ball hit the floor the times are the readings. `None` where lines bear no times.
@@ -178,6 +209,17 @@ fn counted_out(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_fourth_part_of_a_time_is_hundredths_or_asked() {
+        let text = "0:00:00:08;1\n0:00:00:99;2\n";
+        assert_eq!(timecoded(text).as_deref(), Some("0:00:00.08;1\n0:00:00.99;2\n"));
+        let text = "#Kinovea\n0:00:00:08;1\n0:00:01:10;2\n";
+        assert_eq!(timecoded(text).as_deref(), Some("#Kinovea\n0:00:00.08;1\n0:00:01.10;2\n"));
+        for text in ["0:00:00:08;1\n0:00:01:24;2\n", "0:00:99;1\n0:01:98;2\n", "0:00:00:99\n", "a:b:c:99\nd:e:f:98\n"] {
+            assert_eq!(timecoded(text), None, "{text}");
+        }
+    }
 
     #[test]
     fn marks_around_a_table_are_taken_off() {

@@ -109,10 +109,11 @@ pub(in crate::read) fn bulleted(text: &str) -> Option<String> {
 
 /// Records one below the other, each of the same names, `drop: 100 cm`, `rebound: 64 cm`, as a
 /// table with a row for each; `None` if there are no two. Lines before the first stay what they
-/// are, and a line stays a line.
+/// are, lines that stand further left than the records are remarks, and a line stays a line.
 pub(super) fn records(text: &str) -> Option<String> {
     let pair = |line: &'_ str| -> Option<(String, String)> {
-        let bare = line.trim().trim_start_matches("- ").trim_end_matches(',');
+        let said = line.split(" #").next().unwrap_or_default();
+        let bare = said.trim().trim_start_matches("- ").trim_end_matches(',');
         let (name, value) = bare.split_once([':', '='])?;
         let (name, value) = (name.trim(), value.trim());
         let one = !name.is_empty() && !value.is_empty() && !value.contains([',', ';', '[', '(', '\t']);
@@ -124,9 +125,16 @@ pub(super) fn records(text: &str) -> Option<String> {
     // The first name that comes again begins each record.
     let again = |n: &usize| named(*n).is_some() && (n + 1..lines.len()).any(|m| named(m) == named(*n));
     let first = (0..lines.len()).find(again)?;
-    let starts: Vec<usize> = (first..lines.len()).filter(|&n| named(n) == named(first)).collect();
+    let indent = |n: usize| lines[n].len() - lines[n].trim_start().len();
+    let dash = |n: usize| lines[n].trim_start().starts_with("- ");
+    let within = |n: &usize| {
+        let beside = indent(*n) == indent(first) && dash(*n) == dash(first);
+        lines[*n].trim().is_empty() || indent(*n) > indent(first) || beside
+    };
+    let last = (first..lines.len()).take_while(within).last()? + 1;
+    let starts: Vec<usize> = (first..last).filter(|&n| named(n) == named(first)).collect();
     let cells = |at: usize| -> Option<Vec<&(String, String)>> {
-        let end = starts.get(at + 1).copied().unwrap_or(lines.len());
+        let end = starts.get(at + 1).copied().unwrap_or(last);
         (starts[at]..end).filter(|&n| !lines[n].trim().is_empty()).map(|n| pairs[n].as_ref()).collect()
     };
     let all: Vec<Vec<&(String, String)>> = (0..starts.len()).map(cells).collect::<Option<_>>()?;
@@ -143,6 +151,11 @@ pub(super) fn records(text: &str) -> Option<String> {
             if at == 0 { format!("{}\r{row}", names(&all[0]).join("\t")) } else { row }
         }
         None if n < first => lines[n].replace('\t', " "),
+        // A number without a unit states nothing.
+        None if n >= last && matches!(&pairs[n], Some((_, value)) if value.parse::<f64>().is_ok()) => {
+            format!("#{}", lines[n].replace([':', '='], " "))
+        }
+        None if n >= last && !lines[n].trim().is_empty() => format!("#{}", lines[n]),
         None => String::new(),
     };
     Some((0..lines.len()).map(spelt).collect::<Vec<_>>().join("\n") + "\n")
@@ -165,6 +178,9 @@ mod tests {
     fn records_of_the_same_names_are_rows() {
         let text = "unit: cm\n- drop: 60\n  rebound: 37\n- drop: 90\n  rebound: 56\n";
         assert_eq!(records(text).as_deref(), Some("unit: cm\ndrop\trebound\r60\t37\n\n90\t56\n\n"));
+        let text = "runs:\n  - drop_cm: 60  # by eye\n    rebound_cm: 37\n  - drop_cm: 90\n    rebound_cm: 56\nroom: 4\nby: Ann\n";
+        let expected = "runs:\ndrop_cm\trebound_cm\r60\t37\n\n90\t56\n\n#room  4\n#by: Ann\n";
+        assert_eq!(records(text).as_deref(), Some(expected));
         for text in ["drop: 60\nrebound: 37\n", "h: 60\nh: 37\n", "drop: 60\nrebound: 37\ndrop: 90\nball: golf\n"] {
             assert_eq!(records(text), None, "{text}");
         }

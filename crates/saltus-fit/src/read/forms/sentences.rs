@@ -23,6 +23,8 @@ enum Role {
     Release,
     Rebound,
     Other,
+    /// How well all were read.
+    Error,
 }
 
 /// The text with a row for each drop, two or more, and its other lines as remarks; `None` where a
@@ -83,6 +85,7 @@ fn drops(text: &str) -> Option<Vec<Drop>> {
                         more.trim_start_matches([' ', ',']).clone_into(rest);
                     }
                     Role::Other if release.is_none() => {}
+                    Role::Error => {}
                     _ => return None,
                 }
             }
@@ -127,6 +130,22 @@ fn paragraphs(text: &str) -> Vec<(usize, String)> {
 fn role(before: &str, after: &str) -> Option<Role> {
     let turns = [Atom::Predicted, Atom::Goal, Atom::Lost, Atom::Derived, Atom::Error, Atom::Mean, Atom::Max, Atom::Min];
     let words = split(before);
+    // `and the uncertainty is 1 cm`: of no drop.
+    let error = words.iter().rposition(|word| word.is(Atom::Error));
+    if error.is_some_and(|at| words[at + 1..].iter().all(|word| word.is(Atom::Filler))) {
+        return Some(Role::Error);
+    }
+    // `from the greatest drop height, 2 m`: of those that are told the one that is highest.
+    let of_drop = |word: &Word| word.is(Atom::Release) || word.is(Atom::Height) || word.is(Atom::Filler);
+    let extreme = |word: &Word| word.is(Atom::Max) || word.is(Atom::Min);
+    let from = words.iter().rposition(|word| Phrase::From.is(&folded(&word.text)));
+    let of_extreme = from.is_some_and(|at| {
+        let after = &words[at + 1..];
+        after.iter().all(|word| of_drop(word) || extreme(word)) && after.iter().any(|word| word.is(Atom::Release))
+    });
+    if of_extreme {
+        return Some(Role::Release);
+    }
     if words.iter().any(|word| turns.iter().any(|atom| word.is(*atom))) {
         return None;
     }
@@ -170,6 +189,11 @@ mod tests {
                 "Dropped from 1 m it rose to 64 cm, third time 63 cm. From 2 m it rose to 1.3 m.\n",
                 Some(format!("{header}\r1 m\t64 cm\tthird time 63 cm\r2 m\t1.3 m\t\n")),
             ),
+            (
+                "From 1 m it rose to 64 cm, and from the lowest drop height, 50 cm, it rose to 32 cm. The error is about 1 cm.\n",
+                Some(format!("{header}\r1 m\t64 cm\t\r50 cm\t32 cm\t\n")),
+            ),
+            ("From 1 m it rose to 64 cm. From 2 m the maximum of all was 1.3 m.\n", None),
             ("Dropped from 1 m it should come back to 64 cm. From 2 m it rose to 1.3 m.\n", None),
             ("Dropped from 1 m it came back to 64 cm.\n", None),
             ("Dropped from 64 cm it rose to 1 m. From 70 cm it rose to 1.1 m.\n", None),

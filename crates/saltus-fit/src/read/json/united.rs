@@ -1,6 +1,7 @@
 //! Units that records state beside their numbers: `{"unit": "cm", "heights": [100, 64]}`,
 //! `{"height": {"value": 64, "unit": "cm"}}`.
 
+use super::super::cell::{self, Cell};
 use super::super::heading::{At, Heading, Meaning, What};
 use super::super::phrases::Phrase;
 use super::super::units::{Dimension, Unit, names_unit};
@@ -85,9 +86,10 @@ fn inner(name: String, node: Node) -> (String, Node) {
     }
 }
 
-/// A number with the unit behind it.
+/// A number with the unit behind it, whatever mark its decimals bear.
 fn bears(cell: String, unit: &str) -> String {
-    if cell.parse::<f64>().is_ok() { format!("{cell} {unit}") } else { cell }
+    let bare = matches!(cell::read(&cell, false), Cell::Number(m) if m.unit.is_none());
+    if bare { format!("{cell} {unit}") } else { cell }
 }
 
 /// The units that a member states: `"unit": "cm"`, `"height_unit": "cm"`, `"units": {"t": "s"}`.
