@@ -247,3 +247,38 @@ fn letters_that_count_bounces() {
         assert!(verdict.is_err() || verdict.is_ok_and(|verdict| verdict != Verdict::Trusted), "{text}");
     }
 }
+
+/// Rows that stand apart below the others and count and sum them up are no drops, whatever the sum
+/// is called; names of other balls are.
+#[test]
+fn what_sums_rows_up_below_them() {
+    let rows = "sample,drop height (cm),rebound height (cm)\nS-1,100,64\nS-2,100,66\nS-3,100,62\nS-4,100,64\n";
+    let text = format!("{rows}\nn,,4\nmean,,64\nmax,,66\nmin,,62\n");
+    let report = report("a.csv", &text);
+    assert_eq!(
+        report.left_aside().iter().filter(|aside| aside.line.is_some_and(|line| line > 6)).count(),
+        4,
+        "{report}"
+    );
+    near(report.cor().unwrap().value, 0.80);
+    let more = format!("{rows}\nS-5,100,64\nS-6,100,65\n");
+    let table = Table::parse("a.csv", more.as_bytes(), &ReadOptions::default()).unwrap();
+    assert_eq!(table.trials().len(), 6, "{table:?}");
+}
+
+/// A count of bounces goes on where one was not read; a release stands before it, whatever it is
+/// called.
+#[test]
+fn a_count_with_gaps() {
+    near(trusted("a.csv", "bounce;height (cm)\nlet fall;200\n1;128\n2;82\n3;?\n4;33.5\n5;21.5\n"), 0.80);
+}
+
+/// Product and lot are what they are called; what was predicted is no reading wherever that stands.
+#[test]
+fn a_title_of_a_name_and_what_it_is() {
+    let rows = "drop height (cm),rebound height (cm)\n100,64\n80,51\n60,38.5\n";
+    near(trusted("a.csv", &format!("Product,range ball\nSpecimen,3/4 inch ball\n{rows}")), 0.80);
+    for title in ["Data,predicted values", "Calculated,from the ball's COR"] {
+        assert_ne!(report("a.csv", &format!("{title}\n{rows}")).verdict(), Verdict::Trusted, "{title}");
+    }
+}

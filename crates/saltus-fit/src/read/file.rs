@@ -4,7 +4,6 @@
 use saltus_bounce::units::Quantity;
 
 use super::aside::{LeftAside, Part as Kind, Why};
-use super::clause;
 use super::columns::Columns;
 use super::datum::Datum;
 use super::foreign;
@@ -19,8 +18,7 @@ use super::rows::sifted;
 use super::sheet::{Content, Part};
 use super::text::{self, text};
 use super::title::{self, Stated};
-use super::vocabulary::{Atom, ROWS, folded, misspelt};
-use super::words::{Word, split};
+use super::vocabulary::{Atom, folded};
 use super::workbook;
 use super::{Event, Metadata, ReadOptions, Reading, Table, assemble, pool, said};
 use crate::error::TableError;
@@ -134,7 +132,7 @@ fn joined_up<'a>(
         region.zero = datum.as_ref().and_then(Datum::zero);
         match one(region, options, own) {
             Ok(mut table) => {
-                titled(region, &mut table);
+                title::doubted(region, &mut table);
                 // A recording tells where its floor is, and times need none.
                 let placed = |r: &Reading| r.height.is_some() && r.event != Event::Sample;
                 let placed = table.trials.iter().any(|t| t.readings.iter().any(placed));
@@ -248,53 +246,6 @@ fn filmed(regions: &mut [Region<'_>], fps: Option<f64>) {
     }
 }
 
-/// A title that speaks of what was not measured is a doubt, unless a column is the one it speaks
-/// of.
-fn titled(region: &Region<'_>, table: &mut Table) {
-    // The rate of a recording is none of what it shows; and what only looks like a word that was
-    // worked out, `different` for `differenz`, is none in a sentence.
-    let turns = |text: &str| {
-        let heading = Heading::parse(text);
-        let exact = |atom: Atom| split(text).iter().any(|word| word.is(atom));
-        let slip = |atom: Atom| {
-            let meant = |word: &Word| misspelt(&folded(&word.text)).is_some_and(|(_, atoms)| atoms.contains(&atom));
-            matches!(atom, Atom::Predicted | Atom::Goal) && split(text).iter().any(meant)
-        };
-        let unread = |atom: &Atom| exact(*atom) || slip(*atom);
-        heading.turns_readings() && heading.turned_by().iter().any(unread)
-    };
-    // What a rule of measuring is called turns nothing: `acc. to ITF procedure`.
-    let by_rule = |text: &str| {
-        let lower = text.to_lowercase();
-        let at = Phrase::According.all().iter().find_map(|rule| Some((lower.find(rule)?, rule.len())));
-        let (at, long) = at.filter(|_| lower.len() == text.len())?;
-        let after = text[at + long..].trim_start().split_once(' ').map_or("", |(_, after)| after);
-        Some(format!("{}{after}", &text[..at]))
-    };
-    let turned = |text: &str| match (clause::frame_rate(text), by_rule(text)) {
-        (Some(_), _) => turns(&text.replace("rate", "")),
-        (None, Some(text)) => turns(&text),
-        (None, None) => turns(text),
-    };
-    if region.header.iter().any(|name| turned(name)) {
-        return;
-    }
-    let title = region.aside.iter().find(|aside| turned(&aside.name));
-    let title = title.map(|title| Doubt::Title { text: title.name.clone(), line: title.line.unwrap_or(1) });
-    // Comments speak of much else: of one every word is understood, or of a clause of it, which
-    // states no number, for then it speaks of that; and what it states of something by name
-    // (`frame rate: 30`) is of that alone.
-    let speaks = |text: &str| Heading::parse(text).unknown.is_empty() && turned(text);
-    let whole = |text: &str| {
-        let said = text.split_once(':').map_or(text, |(_, said)| said);
-        let clauses = said.split([',', ';', '(']).flat_map(|part| part.split(". "));
-        speaks(said) || clauses.filter(|clause| !clause.contains(|c: char| c.is_ascii_digit())).any(speaks)
-    };
-    let comment = || region.view.grid.comments().take(ROWS).find(|(_, text)| whole(text));
-    let comment = || comment().map(|(line, text)| Doubt::Title { text: super::grid::shown(text.trim()), line });
-    table.doubts.extend(title.or_else(comment));
-}
-
 /// No table was found whose names are understood: the header that comes nearest is read where a
 /// word alone is not, or tells why.
 fn lacking(grid: &Grid<'_>, options: &ReadOptions, metadata: Metadata) -> Result<Table, TableError> {
@@ -350,7 +301,7 @@ fn sheets(name: &str, parts: Vec<Part>, options: &ReadOptions) -> Result<Table, 
             Some(sheet) if label.eq_ignore_ascii_case(sheet.trim()) || stem(&label) == sheet.trim() => None,
             Some(_) => Some(Why::NotChosen),
             None if part.hidden => Some(Why::Hidden),
-            None if Heading::parse(&label).turns_readings() => Some(Why::Predicted),
+            None if title::names_no_readings(&label) => Some(Why::Predicted),
             None if all && stem(&label) != "All" => Some(Why::Elsewhere),
             None => None,
         };
@@ -370,8 +321,15 @@ fn sheets(name: &str, parts: Vec<Part>, options: &ReadOptions) -> Result<Table, 
         }
     }
     if found.is_empty() {
-        let none = || TableError::new(name, "there is no such sheet, or none at all");
-        return Err(first.unwrap_or_else(|| none().help(format!("the file has {}", known.join(", ")))));
+        let unread = aside.iter().find(|(_, why)| *why == Why::Predicted);
+        let none = || match unread {
+            Some((label, _)) => TableError::new(name, format!("the sheet '{label}' is of what was not measured"))
+                .question()
+                .help(format!("give --sheet '{label}' if its heights or times were read")),
+            None => TableError::new(name, "there is no such sheet, or none at all")
+                .help(format!("the file has {}", known.join(", "))),
+        };
+        return Err(first.unwrap_or_else(none));
     }
     let ratios = pool::measured(&mut found, |(_, table)| table);
     aside.extend(ratios.into_iter().map(|(label, _)| (label, Why::Derived)));

@@ -156,6 +156,9 @@ impl Heading {
         if of_a_clock(text) {
             return Self::parse("time (s)").called(text);
         }
+        if let Some(sign) = inside::computed(text) {
+            return Self::parse(&format!("calculated {sign}")).called(name);
+        }
         // Programs put the run before the name: 'Latest: Time (s)'.
         let (run, name) = match text.split_once(':') {
             Some((run, name)) if !name.trim().is_empty() && !run.contains(['(', '[']) => (run.trim(), name),

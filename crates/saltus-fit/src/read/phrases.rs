@@ -56,6 +56,8 @@ pub(super) enum Phrase {
     Diameter,
     /// or half across.
     Radius,
+    /// What a ball is called at the end of its name.
+    Ball,
     /// The upper end of a ball.
     Top,
     /// The point between its ends.
@@ -73,7 +75,7 @@ pub(super) enum Phrase {
 }
 
 impl Phrase {
-    const ALL: [(&'static str, Self); 31] = [
+    const ALL: [(&'static str, Self); 32] = [
         ("missing", Self::Missing),
         ("about", Self::About),
         ("half", Self::Half),
@@ -98,6 +100,7 @@ impl Phrase {
         ("at", Self::At),
         ("diameter", Self::Diameter),
         ("radius", Self::Radius),
+        ("ball", Self::Ball),
         ("top", Self::Top),
         ("middle", Self::Middle),
         ("rose", Self::Rose),

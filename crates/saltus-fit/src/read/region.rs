@@ -178,8 +178,11 @@ fn next_header(view: View<'_>, from: usize, end: usize, before: Option<&Region<'
     // Names stand next to their numbers, but for remarks: what stands above a line that names each
     // of its numbers is a title, whatever it says.
     let numbers = |row: usize| row < end && (0..view.width(row)).any(|c| view.is_number(row, c));
+    let rows_of = |header: &Header| {
+        header.below + (header.below..end).take_while(|&row| remark(view, row, &header.names)).count()
+    };
     let rank = |header: &Header| {
-        let row = header.below + (header.below..end).take_while(|&row| remark(view, row, &header.names)).count();
+        let row = rows_of(header);
         let near = header.score >= VALUE && numbers(row);
         (near, near && header.is_line() && header.names_all(view, row), header.score)
     };
@@ -200,8 +203,8 @@ fn next_header(view: View<'_>, from: usize, end: usize, before: Option<&Region<'
         if before.is_some() && best.is_some() {
             break;
         }
-        // A better header stands next to the first, not below its rows.
-        if best.as_ref().is_some_and(|b| row > b.below + 1) {
+        // A better header stands next to the first, not below its rows; a title has none.
+        if best.as_ref().is_some_and(|b| row > b.below + 1 && numbers(rows_of(b))) {
             break;
         }
     }
@@ -229,6 +232,7 @@ mod tests {
             ("bounce,height\n,cm\n0,100", "bounce|height (cm)", (0, 2)),
             ("time,height\n(s),[cm]\n0,100", "time (s)|height (cm)", (0, 2)),
             ("Mass (g),58\nbounce,height_cm\n0,100", "bounce|height_cm", (1, 2)),
+            ("REBOUND TEST,form 3\nLot,22-a\nBy,Ida\nWhere,hall\nbounce,height_cm\n0,100", "bounce|height_cm", (4, 5)),
             ("Heights, cm\nbounce,height_cm\n0,100", "bounce|height_cm", (1, 2)),
             ("Hi, the rebound heights in cm, the times in s\nbounce,height\n0,100", "bounce|height", (1, 2)),
             (

@@ -51,6 +51,7 @@ pub(super) fn sifted(region: &Region<'_>, columns: &Columns) -> Result<Rows, Tab
     let lettered = columns.number().map_or_else(HashMap::new, |(key, _)| lettered(region, key));
     let begun = columns.number().map_or_else(HashMap::new, |(key, _)| begun(region, columns, key));
     let void = judged::void(region, columns);
+    let summary = summary(region, columns, &used);
     let told_apart = told_apart(region, columns);
     let mut last = region.rows.first().map_or(0, |&row| region.view.line(row, 0));
     for &row in &region.rows {
@@ -70,6 +71,10 @@ pub(super) fn sifted(region: &Region<'_>, columns: &Columns) -> Result<Rows, Tab
         }
         if void.contains(&row) {
             found.aside.push(leave(Why::Void, Part::Row));
+            continue;
+        }
+        if summary.contains(&row) && (numbers || values) {
+            found.aside.push(leave(Why::Statistic, Part::Row));
             continue;
         }
         if told_apart.iter().any(|&n| Heading::parse(region.cell(row, n)).is_predicted()) {
@@ -125,6 +130,23 @@ pub(super) fn sifted(region: &Region<'_>, columns: &Columns) -> Result<Rows, Tab
         found.rows.push(read);
     }
     Ok(found)
+}
+
+/// The rows that stand apart below the others, each named as a count or a statistic, one of them a
+/// mean or an error: `n`, `mean`, `max`.
+fn summary(region: &Region<'_>, columns: &Columns, used: &[usize]) -> HashSet<usize> {
+    let line = |row: usize| region.view.line(row, 0);
+    let statistic = |row: usize| {
+        let (_, heading) = name(region, columns, row, used)?;
+        (heading.sums_up() || heading.has(Atom::Number)).then(|| event_named(&heading) || heading.has(Atom::Median))
+    };
+    let parts: Vec<&[usize]> = region.rows.chunk_by(|&a, &b| line(b) <= line(a) + 1).collect();
+    let below = parts.into_iter().skip(1).filter(|_| !region.view.across);
+    let all = |part: &&[usize]| {
+        let named: Option<Vec<bool>> = part.iter().map(|&row| statistic(row)).collect();
+        named.is_some_and(|means| means.contains(&true))
+    };
+    below.filter(all).flatten().copied().collect()
 }
 
 /// The columns whose words tell rows apart: settings, and those that are left aside and name every
@@ -246,7 +268,8 @@ fn begun(region: &Region<'_>, columns: &Columns, key: usize) -> HashMap<usize, u
     let follows = |pair: &[usize]| match (starts(pair[0]), starts(pair[1])) {
         (true, next) => !next && bounce(cell(pair[1])) == Some(1),
         (false, true) => true,
-        (false, false) => bounce(cell(pair[0])).is_some_and(|n| bounce(cell(pair[1])) == Some(n + 1)),
+        // A bounce whose height was not read leaves its number out.
+        (false, false) => bounce(cell(pair[0])) < bounce(cell(pair[1])),
     };
     let falls = |pair: &[usize]| {
         let mut pairs = heights().filter_map(|n| number(pair[0], n).zip(number(pair[1], n))).peekable();

@@ -1,14 +1,19 @@
 //! What the lines above a table state: a frame rate, the height of release, the unit and the error
 //! of all readings; and lengths that are not used.
 
+use super::Table;
+use super::aside::LeftAside;
 use super::cell::Cell;
 use super::clause::{clauses, drop, error, frame_rate, names_rate, of_clauses, states_length};
 use super::datum::{self, Datum};
 use super::grid::shown;
 use super::heading::{DropHeight, Heading, What};
+use super::phrases::Phrase;
 use super::region::Region;
 use super::units::{Dimension, Unit};
-use super::vocabulary::{ROWS, folded};
+use super::vocabulary::{Atom, ROWS, folded, misspelt};
+use super::words::{Word, split};
+use crate::finding::Doubt;
 
 /// What a table's title states, and where.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -119,4 +124,87 @@ fn of_column(region: &Region<'_>, column: usize) -> Option<f64> {
     let mut rates = region.rows.iter().filter_map(number);
     let first = rates.next().filter(|rate| *rate > 0.0)?;
     rates.all(|rate| rate == first).then_some(first)
+}
+
+/// Whether a text that is no heading says that what it names was not read.
+///
+/// What only looks like a word that was worked out, `different` for `differenz`, or is the
+/// beginning of one, `slo-mo` for `slope`, is none there.
+pub(super) fn names_no_readings(text: &str) -> bool {
+    let heading = Heading::parse(text);
+    let exact = |atom: Atom| split(text).iter().any(|word| word.is(atom));
+    let slip = |atom: Atom| {
+        let meant = |word: &Word| misspelt(&folded(&word.text)).is_some_and(|(_, atoms)| atoms.contains(&atom));
+        matches!(atom, Atom::Predicted | Atom::Goal) && split(text).iter().any(meant)
+    };
+    let unread = |atom: &Atom| exact(*atom) || slip(*atom);
+    heading.turns_readings() && heading.turned_by().iter().any(unread)
+}
+
+/// A title that speaks of what was not measured is a doubt, unless a column is the one it speaks
+/// of.
+pub(super) fn doubted(region: &Region<'_>, table: &mut Table) {
+    // The rate of a recording is none of what it shows.
+    let turns = names_no_readings;
+    // What a rule of measuring is called turns nothing: `acc. to ITF procedure`.
+    let by_rule = |text: &str| {
+        let lower = text.to_lowercase();
+        let at = Phrase::According.all().iter().find_map(|rule| Some((lower.find(rule)?, rule.len())));
+        let (at, long) = at.filter(|_| lower.len() == text.len())?;
+        let after = text[at + long..].trim_start().split_once(' ').map_or("", |(_, after)| after);
+        Some(format!("{}{after}", &text[..at]))
+    };
+    let turned = |text: &str| match (frame_rate(text), by_rule(text)) {
+        (Some(_), _) => turns(&text.replace("rate", "")),
+        (None, Some(text)) => turns(&text),
+        (None, None) => turns(text),
+    };
+    if region.header.iter().any(|name| turned(name)) {
+        return;
+    }
+    // Of a name and what it is, the name says whether readings follow: `Product`, `range ball`; but
+    // what was predicted is no reading wherever that is written.
+    let row = |aside: &LeftAside| {
+        let row = region.view.grid.row_of(aside.line?);
+        let cells = (0..region.view.grid.width(row)).map(|column| region.view.grid.cell(row, column));
+        let cells: Vec<String> = cells.filter(|cell| !cell.is_empty()).map(str::to_owned).collect();
+        <[String; 2]>::try_from(cells).ok()
+    };
+    let wanted =
+        |value: &str| Heading::parse(value).turned_by().iter().any(|a| matches!(a, Atom::Predicted | Atom::Goal));
+    let titles = |aside: &&LeftAside| match row(aside) {
+        Some([name, value]) => turned(&name) || turned(&value) && wanted(&value),
+        None => turned(&aside.name),
+    };
+    let title = region.aside.iter().filter(|aside| !aside.name.starts_with('>')).find(titles);
+    let title = title.map(|title| Doubt::Title { text: title.name.clone(), line: title.line.unwrap_or(1) });
+    // Comments speak of much else: of one every word is understood, or of a clause of it, which
+    // states no number, for then it speaks of that; and what it states of something by name
+    // (`frame rate: 30`) is of that alone.
+    let speaks = |text: &str| Heading::parse(text).unknown.is_empty() && turned(text);
+    let whole = |text: &str| {
+        let said = text.split_once(':').map_or(text, |(_, said)| said);
+        let clauses = said.split([',', ';', '(']).flat_map(|part| part.split(". "));
+        speaks(said) || clauses.filter(|clause| !clause.contains(|c: char| c.is_ascii_digit())).any(speaks)
+    };
+    let comment = || region.view.grid.comments().take(ROWS).find(|(_, text)| whole(text));
+    let comment = || comment().map(|(line, text)| Doubt::Title { text: shown(text.trim()), line });
+    table.doubts.extend(title.or_else(comment));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A slip or an abbreviation of what was worked out is none in a sentence; one of what was
+    /// predicted is.
+    #[test]
+    fn texts_that_name_no_readings() {
+        for text in ["Prediction", "Calculated heights", "Ratio of the heights", "predcted heights"] {
+            assert!(names_no_readings(text), "{text}");
+        }
+        for text in ["slo-mo", "different heights", "Data", "Wood", "measured"] {
+            assert!(!names_no_readings(text), "{text}");
+        }
+    }
 }

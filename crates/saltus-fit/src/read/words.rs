@@ -56,6 +56,8 @@ pub(super) fn split(text: &str) -> Vec<Word> {
             Kind::Unknown
         } else if let Some(atoms) = meanings(&folded) {
             Kind::Known(atoms)
+        } else if let Some(atoms) = spelt_out(&folded) {
+            Kind::Known(atoms)
         } else if let Some(n) = ordinal(&folded) {
             Kind::Ordinal(n)
         } else if Phrase::Two.is(&folded) && words.last().is_some_and(|w| w.is(Atom::Between)) {
@@ -79,6 +81,8 @@ pub(super) fn split(text: &str) -> Vec<Word> {
                 }
                 _ => Kind::Unknown,
             }
+        } else if of_a_ball(&folded) {
+            Kind::Known(&[Atom::Label])
         } else if let Some(parts) = symbol(&folded).or_else(|| compound(&folded)) {
             words.extend(parts.map(|(text, atoms)| Word { text: text.to_owned(), kind: Kind::Known(atoms) }));
             continue;
@@ -103,6 +107,19 @@ pub(super) fn split(text: &str) -> Vec<Word> {
         }
     }
     words
+}
+
+/// A word whose vowels with two dots are spelt by two letters: `Ruecksprung` for `Rücksprung`.
+fn spelt_out(word: &str) -> Option<&'static [Atom]> {
+    let plain = word.replace("ae", "a").replace("oe", "o").replace("ue", "u");
+    meanings(&plain).filter(|_| plain != word)
+}
+
+/// Whether a word ends in what balls are called, behind a part that says which: `hockeybal`,
+/// `Wasserball`; shorter words end so by chance, as `global` does.
+fn of_a_ball(word: &str) -> bool {
+    let which = Phrase::Ball.all().iter().find_map(|ball| word.strip_suffix(ball));
+    which.is_some_and(|which| which.chars().count() >= PART && which.chars().all(char::is_alphabetic))
 }
 
 /// A sign of a quantity and the event that it was read at, `hdrop`, `vout`.

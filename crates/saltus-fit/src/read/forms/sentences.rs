@@ -135,7 +135,7 @@ fn role(before: &str, after: &str) -> Option<Role> {
     if error.is_some_and(|at| words[at + 1..].iter().all(|word| word.is(Atom::Filler))) {
         return Some(Role::Error);
     }
-    // `from the greatest drop height, 2 m`: of those that are told the one that is highest.
+    // `from the greatest drop height, 2 m`: the highest of those in the text.
     let of_drop = |word: &Word| word.is(Atom::Release) || word.is(Atom::Height) || word.is(Atom::Filler);
     let extreme = |word: &Word| word.is(Atom::Max) || word.is(Atom::Min);
     let from = words.iter().rposition(|word| Phrase::From.is(&folded(&word.text)));

@@ -216,3 +216,14 @@ pub(super) fn is_cor(words: &[Word]) -> bool {
     let text = |w: &Word| folded(&w.text);
     words.iter().any(|w| w.is(Atom::Cor)) && !words.iter().any(|w| text(w) == "squared" || text(w).starts_with("energ"))
 }
+
+/// The sign of what a formula of other columns gives: `e` of `e = √(h1/h0)`. A number behind the
+/// sign is stated, and a unit in brackets no formula.
+pub(super) fn computed(text: &str) -> Option<&str> {
+    let (sign, formula) = text.split_once('=')?;
+    let unit = |at: usize| Unit::parse(formula[at..].trim_matches(['(', ')', '[', ']', ' '])).is_some();
+    let formula = formula.rfind(['(', '[']).filter(|at| unit(*at)).map_or(formula, |at| &formula[..at]);
+    let stated = formula.trim_start().starts_with(|c: char| c.is_ascii_digit());
+    let combines = formula.contains(['/', '*', '^', '√', '·', '×', '÷']) && formula.contains(char::is_alphabetic);
+    (combines && !stated).then(|| sign.trim())
+}

@@ -145,3 +145,29 @@ fn drops_are_counted_and_heights_are_not() {
     assert_eq!((height("Drop 12 cm"), height("Drop 3 m")), (None, None));
     assert_eq!(height("Drop 2.5 m"), Some(2.5));
 }
+
+/// What a formula of other columns gives was worked out; what is stated behind a sign, or has its
+/// unit there, is none.
+#[test]
+fn formulas_of_other_columns_are_no_readings() {
+    for text in ["e = √(h1/h0)", "e = racine(h rebond / h chute)", "v = g*t (m/s)"] {
+        assert!(Heading::parse(text).turns(), "{text}");
+    }
+    for text in ["h = 64/2", "h (cm) = height", "v = speed (m/s)", "rebound height (cm)"] {
+        assert!(!Heading::parse(text).turns(), "{text}");
+    }
+}
+
+/// A name that ends as those of balls do is one, and vowels may be spelt out.
+#[test]
+fn names_of_balls_and_vowels_that_are_spelt_out() {
+    for text in ["hockeybal", "Wasserball", "skumboll"] {
+        let heading = Heading::parse(text);
+        assert!(heading.unknown.is_empty() && heading.has(Atom::Label), "{text}");
+    }
+    for text in ["global", "verbal", "xball"] {
+        assert!(!Heading::parse(text).has(Atom::Label), "{text}");
+    }
+    let (spelt, marked) = (Heading::parse("Ruecksprunghoehe (cm)"), Heading::parse("Rücksprunghöhe (cm)"));
+    assert!(spelt.understood() && spelt.has(Atom::Rebound) && marked.has(Atom::Rebound));
+}
