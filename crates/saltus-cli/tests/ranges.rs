@@ -6,7 +6,6 @@
 mod tool;
 
 use std::process::Command;
-use std::time::{Duration, Instant};
 
 use tool::{root, saltus, text};
 
@@ -14,13 +13,10 @@ const VALUES: [&str; 12] =
     ["0", "-1", "0.5", "1e-300", "1e-30", "1e-9", "1e6", "299792458", "1e12", "1e300", "nan", "inf"];
 /// Words of libraries, and digits that nobody reads.
 const JARGON: [&str; 4] = ["invalid digit", "in string", "..=", "0000000000000000000000000000000000"];
-/// How long a command may take.
-const PATIENCE: Duration = Duration::from_secs(20);
 
 /// Runs the command with each value behind the option.
 fn each(option: &str, unit: &str, command: impl Fn() -> Command) {
     for value in VALUES {
-        let clock = Instant::now();
         let output = command().arg(format!("{option}={value}{unit}")).output().unwrap();
         let says = text(&output.stderr);
         let here = format!("{option}={value}{unit}: {says}");
@@ -44,7 +40,6 @@ fn each(option: &str, unit: &str, command: impl Fn() -> Command) {
             _ => panic!("{here}"),
         }
         assert!(JARGON.iter().all(|word| !says.contains(word)), "{here}");
-        assert!(clock.elapsed() < PATIENCE, "{here}");
     }
 }
 

@@ -77,6 +77,12 @@ fn series_of_20_000(bencher: Bencher) {
     bencher.bench(|| run(&Fit::new(), &text));
 }
 
+#[divan::bench(sample_count = 3)]
+fn a_million_rows(bencher: Bencher) {
+    let text = launches(100_000, 10);
+    bencher.bench(|| run(&Fit::new().sigma_time(0.001), &text));
+}
+
 #[divan::bench(sample_count = 10)]
 fn bootstrap_1000_of_ten_trials(bencher: Bencher) {
     let (text, fit) = (launches(10, 8), Fit::new().bootstrap(1000, 1));

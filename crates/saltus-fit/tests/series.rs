@@ -152,15 +152,10 @@ fn what_does_not_bounce_is_refused_in_words() {
 }
 
 #[test]
-fn twenty_thousand_samples_take_seconds() {
+fn twenty_thousand_samples_give_their_cor() {
     let mut noise = Noise(18);
     let film = noisy(&light().film(10_000.0, 2.0), &mut noise, 0.002);
-    let start = std::time::Instant::now();
-    let report = report(&csv(&film));
-    let took = start.elapsed();
-    println!("20 000 samples: {took:?}");
-    holds(&report, 0.9, 0.002);
-    assert!(took.as_secs() < 20, "{took:?}");
+    holds(&report(&csv(&film)), 0.9, 0.002);
 }
 
 /// A folder of other people's recordings, or `None`, saying so, where it is not to be had.

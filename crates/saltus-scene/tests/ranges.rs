@@ -4,7 +4,6 @@
 #![allow(clippy::unwrap_used, clippy::panic)] // a test that cannot go on has failed
 
 use std::collections::BTreeSet;
-use std::time::{Duration, Instant};
 
 use saltus_scene::{Run, Template};
 use serde_json::Value;
@@ -90,8 +89,7 @@ const JARGON: [&str; 10] = [
 /// The latest time that can be right, in s.
 const LATEST: f64 = 1e12;
 
-/// How long a run may take here, limited as it is.
-const PATIENCE: Duration = Duration::from_secs(10);
+/// The most evaluations of a run here: what it may cost, whatever the number is.
 const EVALUATIONS: u64 = 20_000;
 
 /// The path of every number in a scene.
@@ -122,7 +120,6 @@ fn every_number_is_run_or_its_range_is_said() {
             let template = Template::parse("scene", toml.as_bytes(), &[path]).unwrap();
             for value in VALUES {
                 let here = format!("{path} = {value} in\n{toml}");
-                let clock = Instant::now();
                 let says = match template.scene(&[value], Run::default()) {
                     Err(error) => {
                         assert!(error.help().is_some(), "{here}\n{error}");
@@ -147,7 +144,6 @@ fn every_number_is_run_or_its_range_is_said() {
                     let jargon = JARGON.iter().find(|word| says.contains(**word));
                     assert!(jargon.is_none(), "{here}\n{says}");
                 }
-                assert!(clock.elapsed() < PATIENCE, "{here}");
             }
         }
     }
