@@ -391,11 +391,12 @@ fn left_out(model: &Flight, whole: &Fitted) -> Result<Option<f64>, FitError> {
     }
     let (mut sum, mut rows) = (0.0, 0);
     for j in 0..count {
-        let (mut rest, mut own) = (model.clone(), whole.own.clone());
+        let (mut rest, mut own) = (Flight { supposed: true, ..model.clone() }, whole.own.clone());
         let trial = rest.trials.remove(j);
         let left = own.remove(j);
         let Some(others) = run(&rest, &whole.shared, Some(&own)) else { return Ok(None) };
-        let alone = Flight { trials: vec![trial], pinned: Some(others.shared.clone()), ..model.clone() };
+        let alone =
+            Flight { trials: vec![trial], pinned: Some(others.shared.clone()), supposed: true, ..model.clone() };
         if used(&alone) == 0 {
             continue;
         }

@@ -246,14 +246,17 @@ fn found(runs: &[Run], sigma: f64) -> Vec<(Way, f64)> {
     for released in [false, true].into_iter().filter(|r| !r || runs.iter().any(|run| run.from_rest)) {
         for e in tried() {
             let prices = Prices { e, sigma, released };
-            let way = Way { cost: 0.0, released, runs: runs.iter().map(|run| prices.cheapest(run)).collect() };
-            let (cost, best) = way.at_its_best(runs, e, sigma);
+            let mut way = Way { cost: 0.0, released, runs: runs.iter().map(|run| prices.cheapest(run)).collect() };
+            way.cost = way.price(runs, e, sigma);
             match ways.iter_mut().find(|w| w.0.released == released && w.0.runs == way.runs) {
-                Some(known) if known.0.cost <= cost => {}
-                Some(known) => (known.0.cost, known.1) = (cost, best),
-                None => ways.push((Way { cost, ..way }, best)),
+                Some(known) if known.0.cost <= way.cost => {}
+                Some(known) => (known.0.cost, known.1) = (way.cost, e),
+                None => ways.push((way, e)),
             }
         }
+    }
+    for (way, e) in &mut ways {
+        (way.cost, *e) = way.at_its_best(runs, *e, sigma);
     }
     ways.sort_by(|a, b| a.0.cost.total_cmp(&b.0.cost));
     ways

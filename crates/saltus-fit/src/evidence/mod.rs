@@ -59,9 +59,17 @@ pub(crate) struct Evidence {
     pub(crate) adrift: usize,
     /// The trials as they are if the contacts are read in other ways that are about as likely.
     pub(crate) rivals: Vec<Vec<TrialEvidence>>,
+    /// The readings were altered, or are a part of those of the table: what fits them is compared,
+    /// and not reported.
+    pub(crate) supposed: bool,
 }
 
 impl Evidence {
+    /// Trials that are supposed.
+    pub(crate) fn supposed(trials: Vec<TrialEvidence>) -> Self {
+        Self { trials, supposed: true, ..Self::default() }
+    }
+
     /// Sorts the readings of a table into heights and moments, and mends the contacts if that is
     /// wanted; `sigma_time` is the error stated for times, if any.
     pub(crate) fn of(table: &Table, sigma_time: Option<f64>, repair: bool) -> Self {

@@ -15,7 +15,7 @@ const ROUNDS: usize = 12;
 pub(crate) fn telling(evidence: &Evidence) -> Evidence {
     let readings: usize = evidence.trials.iter().map(|t| t.heights.len().max(t.moments.len()).min(TELLING)).sum();
     let trials = evidence.trials.iter().step_by(readings.div_ceil(TELLING).max(1)).cloned();
-    let mut few = Evidence { trials: trials.collect(), ..Evidence::default() };
+    let mut few = Evidence::supposed(trials.collect());
     for trial in &mut few.trials {
         trial.heights.truncate(TELLING);
         trial.moments.truncate(TELLING);

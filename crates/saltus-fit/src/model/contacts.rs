@@ -22,6 +22,7 @@ pub(crate) struct Contacts {
     pub(crate) trend: bool,
     /// The errors are those of the intervals, which add up along the times.
     pub(crate) added_up: bool,
+    pub(crate) supposed: bool,
 }
 
 impl Contacts {
@@ -98,6 +99,10 @@ impl Sums {
 }
 
 impl Model for Contacts {
+    fn supposed(&self) -> bool {
+        self.supposed
+    }
+
     fn ranges(&self) -> Vec<(Bounds, f64)> {
         let mut ranges = vec![(Bounds { low: 0.0, high: self.high }, 0.1)];
         if self.trend {

@@ -88,6 +88,7 @@ pub(crate) struct Flight {
     pub(crate) lasting: Option<f64>,
     /// The shared unknowns are known: only own ones are fitted.
     pub(crate) pinned: Option<Vec<f64>>,
+    pub(crate) supposed: bool,
 }
 
 /// Where the shared unknowns beside those of the law stand.
@@ -229,6 +230,10 @@ struct Beginning {
 }
 
 impl Model for Flight {
+    fn supposed(&self) -> bool {
+        self.supposed
+    }
+
     fn ranges(&self) -> Vec<(Bounds, f64)> {
         let mut ranges = self.law.ranges();
         if let Some(bounds) = self.offset {

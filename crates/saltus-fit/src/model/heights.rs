@@ -25,9 +25,14 @@ pub(crate) struct Heights {
     pub(crate) trend: bool,
     /// Fits the logarithms instead of the heights.
     pub(crate) logarithms: bool,
+    pub(crate) supposed: bool,
 }
 
 impl Model for Heights {
+    fn supposed(&self) -> bool {
+        self.supposed || self.logarithms
+    }
+
     fn ranges(&self) -> Vec<(Bounds, f64)> {
         let mut ranges = vec![(Bounds { low: -20.0, high: self.high }, 1e3)];
         if self.trend {

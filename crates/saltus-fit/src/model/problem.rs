@@ -11,6 +11,10 @@ pub(crate) struct Bounds {
 
 /// A model of whitened residuals in blocks.
 pub(crate) trait Model {
+    /// Whether its readings were altered, or are a part of those of a table, to be compared.
+    fn supposed(&self) -> bool {
+        false
+    }
     /// For each shared unknown its range, and how far one step may move it.
     fn ranges(&self) -> Vec<(Bounds, f64)>;
     /// The numbers of rows and of own unknowns of a block.

@@ -59,7 +59,7 @@ pub(crate) fn run(
             trial.trial = n;
             trial
         });
-        let drawn = Evidence { trials: trials.collect(), ..Evidence::default() };
+        let drawn = Evidence::supposed(trials.collect());
         found.extend(cor(&drawn, fits)?);
         if progress(found.len()).is_break() {
             return Err(FitError::Ended);

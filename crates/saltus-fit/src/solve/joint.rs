@@ -45,6 +45,8 @@ pub(crate) struct Suppose {
     pub(crate) drag: bool,
     /// A COR linear in speed, between these speeds.
     pub(crate) slope: Option<(f64, f64)>,
+    /// The readings are supposed.
+    pub(crate) readings: bool,
 }
 
 /// The sum of squares may have several minima: the lowest that the starts lead to.
@@ -54,8 +56,14 @@ pub(crate) fn run(
     suppose: Suppose,
     starts: &[f64],
 ) -> Result<Option<(Flight, Fitted)>, FitError> {
-    let mut model =
-        Flight { trials: trials.to_vec(), gravity, lag: suppose.lag, drag: suppose.drag, ..Flight::default() };
+    let mut model = Flight {
+        trials: trials.to_vec(),
+        gravity,
+        lag: suppose.lag,
+        drag: suppose.drag,
+        supposed: suppose.readings,
+        ..Flight::default()
+    };
     if suppose.offset {
         let tallest = model.tallest();
         model.offset = Some(Bounds { low: -tallest, high: 0.9 * tallest });
@@ -93,7 +101,8 @@ pub(crate) fn joint(
     if trials.is_empty() || trials.iter().any(|t| bounces(t) > FOLLOWED) {
         return Ok(None);
     }
-    let Some((model, fitted)) = run(&trials, gravity, Suppose::default(), &[0.3, 0.55, 0.8, 0.95])? else {
+    let suppose = Suppose { readings: evidence.supposed, ..Suppose::default() };
+    let Some((model, fitted)) = run(&trials, gravity, suppose, &[0.3, 0.55, 0.8, 0.95])? else {
         return Ok(None);
     };
     if fitted.freedom == 0 || fitted.active[0] {
@@ -126,7 +135,8 @@ fn apart(joint: &Joint) -> Result<Option<Apart>, FitError> {
     for trial in &joint.model.trials {
         let starts = [joint.fitted.shared[0], 0.5];
         let alone = std::slice::from_ref(trial);
-        let Some((_, fitted)) = run(alone, joint.model.gravity, Suppose::default(), &starts)? else { return Ok(None) };
+        let suppose = Suppose { readings: true, ..Suppose::default() };
+        let Some((_, fitted)) = run(alone, joint.model.gravity, suppose, &starts)? else { return Ok(None) };
         let cor = fitted.measured(0);
         if fitted.active[0] || !cor.standard_error.is_finite() || cor.standard_error <= 0.0 {
             return Ok(None);

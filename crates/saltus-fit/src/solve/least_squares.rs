@@ -53,16 +53,19 @@ pub(crate) enum Failure {
 
 /// Minimises ½ ‖X x − y‖² within the bounds, by solver and factorisation.
 pub(crate) fn solve(x: &DMatrix<f64>, y: &DVector<f64>, bounds: &[Bounds]) -> Result<Solution, Failure> {
-    minimum(x, y, bounds, true)
+    minimum(x, y, bounds, Scaled::bounded)
 }
 
-/// The same for a step on the way to a minimum: where the free minimum lies within the bounds it is
-/// the answer, and no solver is asked.
-pub(crate) fn step(x: &DMatrix<f64>, y: &DVector<f64>, bounds: &[Bounds]) -> Result<DVector<f64>, Failure> {
-    minimum(x, y, bounds, false).map(|solution| solution.x)
+/// The same for a step on the way to a minimum, and for what is compared and not reported: the
+/// solver is asked only where the factorisation alone does not find which bounds hold.
+pub(crate) fn settle(x: &DMatrix<f64>, y: &DVector<f64>, bounds: &[Bounds]) -> Result<Solution, Failure> {
+    minimum(x, y, bounds, |scaled, free| scaled.mended(vec![None; free.len()]).or_else(|_| scaled.bounded(free)))
 }
 
-fn minimum(x: &DMatrix<f64>, y: &DVector<f64>, bounds: &[Bounds], always: bool) -> Result<Solution, Failure> {
+/// What finds the minimum within the bounds, given the free one.
+type Way = fn(&Scaled, &DVector<f64>) -> Result<(Direct, Vec<Option<Side>>), Failure>;
+
+fn minimum(x: &DMatrix<f64>, y: &DVector<f64>, bounds: &[Bounds], way: Way) -> Result<Solution, Failure> {
     let (rows, n) = x.shape();
     if y.len() != rows || bounds.len() != n {
         return Err(Failure::Malformed);
@@ -87,8 +90,7 @@ fn minimum(x: &DMatrix<f64>, y: &DVector<f64>, bounds: &[Bounds], always: bool) 
         high: (0..n).map(|j| bounds[j].high * (column[j] / length)).collect(),
     };
     let free = scaled.direct(&vec![None; n]).ok_or(Failure::NotIdentified)?;
-    let within = (0..n).all(|j| scaled.low[j] < free.0[j] && free.0[j] < scaled.high[j]);
-    let ((z, inverse), active) = if within && !always { (free, vec![None; n]) } else { scaled.bounded(&free.0)? };
+    let ((z, inverse), active) = way(&scaled, &free.0)?;
     let mut answer = DVector::from_fn(n, |j, _| z[j] * length / column[j]);
     for j in 0..n {
         // Snap: an unknown at a bound is on it, not 1e-10 beside it.
@@ -172,24 +174,25 @@ impl Scaled {
     /// sharp where the unknowns are not.
     fn bounded(&self, free: &DVector<f64>) -> Result<(Direct, Vec<Option<Side>>), Failure> {
         let reach = FAR * (1.0 + free.amax());
-        let n = free.len();
         // Should the solver give up, the conditions of a minimum still decide alone.
-        let (solver, mut active) = match self.conic(reach).or_else(|_| self.conic(f64::INFINITY)) {
+        let (solver, active) = match self.conic(reach).or_else(|_| self.conic(f64::INFINITY)) {
             Ok((z, active)) => (Some(z), active),
-            Err(_) => (None, vec![None; n]),
+            Err(_) => (None, vec![None; free.len()]),
         };
-        for _ in 0..10 + 4 * n {
+        let (found, active) = self.mended(active)?;
+        let ours = self.squares(&found.0);
+        let theirs = solver.as_ref().map_or(ours, |solver| self.squares(solver));
+        if (ours - theirs).abs() <= AGREE {
+            return Ok((found, active));
+        }
+        Err(Failure::Solver(format!("solver and factorisation leave {theirs:.3e} and {ours:.3e} of 1")))
+    }
+
+    /// The minimum with the bounds that hold there, found bound by bound from those of a guess.
+    fn mended(&self, mut active: Vec<Option<Side>>) -> Result<(Direct, Vec<Option<Side>>), Failure> {
+        for _ in 0..10 + 4 * active.len() {
             let found = self.direct(&active).ok_or(Failure::NotIdentified)?;
-            let Some((j, side)) = self.violation(&found.0, &active) else {
-                let ours = self.squares(&found.0);
-                let theirs = solver.as_ref().map_or(ours, |solver| self.squares(solver));
-                if (ours - theirs).abs() <= AGREE {
-                    return Ok((found, active));
-                }
-                return Err(Failure::Solver(format!(
-                    "solver and factorisation leave {theirs:.3e} and {ours:.3e} of 1"
-                )));
-            };
+            let Some((j, side)) = self.violation(&found.0, &active) else { return Ok((found, active)) };
             active[j] = side;
         }
         Err(Failure::Solver("no choice of bounds satisfies the conditions of a minimum".to_owned()))

@@ -44,7 +44,13 @@ impl OneKind for Heights {
     const ASSUMED: f64 = 0.01;
 
     fn with_sigma(evidence: &Evidence, sigma: f64) -> Self {
-        Self { trials: Arc::new(evidence.heights(sigma)), high: 0.0, trend: false, logarithms: false }
+        Self {
+            trials: Arc::new(evidence.heights(sigma)),
+            high: 0.0,
+            trend: false,
+            logarithms: false,
+            supposed: evidence.supposed,
+        }
     }
 
     fn read(evidence: &Evidence) -> Vec<f64> {
@@ -85,7 +91,13 @@ impl OneKind for Contacts {
     const ASSUMED: f64 = ASSUMED_TIME;
 
     fn with_sigma(evidence: &Evidence, sigma: f64) -> Self {
-        Self { trials: evidence.moments(sigma), high: 1.0, trend: false, added_up: evidence.added_up() }
+        Self {
+            trials: evidence.moments(sigma),
+            high: 1.0,
+            trend: false,
+            added_up: evidence.added_up(),
+            supposed: evidence.supposed,
+        }
     }
 
     fn read(evidence: &Evidence) -> Vec<f64> {

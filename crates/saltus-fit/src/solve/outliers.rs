@@ -113,7 +113,7 @@ fn find<M: OneKind>(
 /// which says nothing.
 fn follows_its_own<M: OneKind>(evidence: &Evidence, trial: usize, sigma: f64) -> bool {
     let Some(own) = evidence.trials.get(trial) else { return false };
-    let model = M::with_sigma(&Evidence { trials: vec![own.clone()], ..Evidence::default() }, sigma);
+    let model = M::with_sigma(&Evidence::supposed(vec![own.clone()]), sigma);
     let fitted = model.usable().then(|| identified(M::READINGS.name(), model.minimise()).ok().flatten()).flatten();
     fitted.is_some_and(|fit| chi_square_p(fit.chi_square, fit.freedom).is_some_and(|p| p >= REJECT))
 }

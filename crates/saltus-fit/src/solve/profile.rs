@@ -79,6 +79,10 @@ impl<M: Model> Held<'_, M> {
 }
 
 impl<M: Model> Model for Held<'_, M> {
+    fn supposed(&self) -> bool {
+        true
+    }
+
     fn ranges(&self) -> Vec<(Bounds, f64)> {
         let mut ranges = self.model.ranges();
         ranges.remove(self.place);

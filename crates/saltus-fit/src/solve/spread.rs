@@ -72,7 +72,7 @@ impl Apart {
 pub(crate) fn apart<M: OneKind>(evidence: &Evidence, sigma: Sourced) -> Result<Option<Apart>, FitError> {
     let mut found = Apart::default();
     for trial in &evidence.trials {
-        let alone = Evidence { trials: vec![trial.clone()], ..Evidence::default() };
+        let alone = Evidence::supposed(vec![trial.clone()]);
         let model = M::with_sigma(&alone, sigma.value);
         if !model.usable() {
             continue;

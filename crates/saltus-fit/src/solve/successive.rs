@@ -9,7 +9,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::least_squares::{Failure, solve, step};
+use super::least_squares::{Failure, settle, solve};
 use crate::elementary::hypot;
 use crate::model::{Bounds, Model};
 use crate::quantity::Measured;
@@ -139,7 +139,7 @@ pub(crate) fn fit(model: &impl Model, shared: &[f64], own: Vec<Vec<f64>>) -> Res
                 high: (whole[j].high - shared[j]).min(trust[j]),
             })
             .collect();
-        let step = step(&here.x, &here.y, &within)?;
+        let step = settle(&here.x, &here.y, &within)?.x;
         let own_step = own_steps(&here, step.as_slice(), &sizes)?;
         let small = |tolerance: f64| (0..shared.len()).all(|j| step[j].abs() <= tolerance * (1.0 + shared[j].abs()));
         let gain = predicted_gain(&here, &step, &sizes);
@@ -197,7 +197,7 @@ pub(crate) fn score_gain(model: &impl Model, shared: &[f64], own: &[Vec<f64>]) -
     let sizes: Vec<usize> = own.iter().map(Vec::len).collect();
     let here = linearise(model, shared, &own.concat(), &sizes)?;
     let wide = vec![Bounds { low: -1e6, high: 1e6 }; shared.len()];
-    let step = step(&here.x, &here.y, &wide)?;
+    let step = settle(&here.x, &here.y, &wide)?.x;
     let gain = predicted_gain(&here, &step, &sizes);
     Ok((gain, here.cost - gain))
 }
@@ -213,7 +213,7 @@ fn finish(
 ) -> Result<Fitted, Failure> {
     let within: Vec<Bounds> =
         whole.iter().zip(&shared).map(|(b, x)| Bounds { low: b.low - x, high: b.high - x }).collect();
-    let last = solve(&here.x, &here.y, &within)?;
+    let last = if model.supposed() { settle } else { solve }(&here.x, &here.y, &within)?;
     // On a bound counts, even where the free minimum is there too: no covariance speaks for both
     // sides.
     let active: Vec<bool> =

@@ -162,6 +162,6 @@ fn settings<M: OneKind>(
 /// in how far it is from theirs.
 fn of_setting<M: OneKind>(evidence: &Evidence, trials: &[Trial], setting: &str, sigma: Sourced) -> Option<f64> {
     let of = |t: &&TrialEvidence| trials.get(t.trial).is_some_and(|trial| trial.setting == setting);
-    let own = Evidence { trials: evidence.trials.iter().filter(of).cloned().collect(), ..Evidence::default() };
+    let own = Evidence::supposed(evidence.trials.iter().filter(of).cloned().collect());
     one_kind::<M>(&own, Some(sigma)).ok().flatten()?.estimate.value
 }

@@ -180,7 +180,7 @@ pub(crate) fn read_otherwise(judgement: &mut Judgement, fits: &Fits<'_>, known: 
     let flights = |trial: &TrialEvidence| trial.moments.last().map_or(0, |m| m.0);
     let mut far = None;
     for trials in &fits.evidence.rivals {
-        let evidence = Evidence { trials: trials.clone(), ..Evidence::default() };
+        let evidence = Evidence::supposed(trials.clone());
         let Some(cor) = Fits::of(fits.table, &evidence, known, false).ok().and_then(|fits| judged(&fits)) else {
             continue;
         };

@@ -7,7 +7,13 @@ use crate::model::{Contacts, CorLaw, Flight, FlightTrial, Heights};
 
 fn contacts(times: &[f64], sigma: f64) -> Contacts {
     let one = |(flights, &time): (usize, &f64)| Moment { flights, apex: false, time, sigma };
-    Contacts { trials: vec![times.iter().enumerate().map(one).collect()], high: 1.0, trend: false, added_up: false }
+    Contacts {
+        trials: vec![times.iter().enumerate().map(one).collect()],
+        high: 1.0,
+        trend: false,
+        added_up: false,
+        supposed: false,
+    }
 }
 
 /// Compares filled derivatives with central differences of filled residuals.
@@ -44,7 +50,11 @@ fn derivatives_are_those_of_the_residuals() {
         let shared = if trend { vec![-0.2, 0.003] } else { vec![-0.2] };
         for logarithms in [false, true] {
             let trials = vec![vec![(0, 1.0, 0.01), (1, 0.7, 0.02), (3, 0.3, 0.01)]];
-            derivatives_match(&Heights { trials: trials.into(), high: 0.0, trend, logarithms }, &shared, &[0.1]);
+            derivatives_match(
+                &Heights { trials: trials.into(), high: 0.0, trend, logarithms, supposed: false },
+                &shared,
+                &[0.1],
+            );
         }
         let mut model = Contacts { trend, ..contacts(&[0.1, 0.9, 1.5, 2.0], 0.1) };
         model.trials[0][2].apex = true;
@@ -109,7 +119,7 @@ fn elimination_agrees_with_the_whole_problem() {
         vec![(0, 0.8, 0.01), (1, 0.53, 0.01)],
         vec![(1, 0.66, 0.02), (2, 0.40, 0.01), (4, 0.17, 0.01)],
     ];
-    let model = Heights { trials: trials.clone().into(), high: 0.0, trend: false, logarithms: true };
+    let model = Heights { trials: trials.clone().into(), high: 0.0, trend: false, logarithms: true, supposed: false };
     let found = fit(&model, &[-0.3], vec![vec![0.0]; 3]).unwrap();
     let (mut normal, mut right) = (DMatrix::<f64>::zeros(4, 4), DVector::<f64>::zeros(4));
     for (j, trial) in trials.iter().enumerate() {
