@@ -115,7 +115,7 @@ fn tables_that_cannot_be_read() {
         ("bounce,height_cm\n0,100\n1,NaN\n", &[":3:3:", "1,NaN", "^^^"]),
         ("bounce,height_cm\n0,100\n1,-3\n", &[":3:3:", "1,-3", "below the floor"]),
         ("bounce,height_furlong\n0,100\n1,30\n", &["furlong"]),
-        ("bounce,hight_cm\n0,100\n1,30\n", &["hight_cm", "height"]),
+        ("bounce,hoighte_cm\n0,100\n1,30\n", &["hoighte_cm", "height"]),
         ("bounce,height\n0,100\n1,30\n", &["--height-unit"]),
     ] {
         let (_folder, path) = table(content);

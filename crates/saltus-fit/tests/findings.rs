@@ -175,7 +175,8 @@ fn every_remark_comes_back() {
         Note::Size { rows: 1, trials: 2 },
         Note::Recognised { program: Program::Tracker },
         Note::Encoded { encoding: "UTF-16LE".to_owned() },
-        Note::Rate { rate: 240.0, line: 3 },
+        Note::Rate { rate: 240.0, line: Some(3) },
+        Note::Rate { rate: 240.0, line: None },
         Note::Still { tracks: columns() },
         Note::Heard { sounds: 48, contacts: 10, from: 0.0, to: 6.46 },
         Note::Overdriven { part: 0.02 },
@@ -236,5 +237,5 @@ fn every_remark_comes_back() {
         },
         Warning::MoreStrays { heights: 7 },
     ];
-    assert_eq!((back(notes), back(repairs), back(warnings)), (41, 6, 7));
+    assert_eq!((back(notes), back(repairs), back(warnings)), (42, 6, 7));
 }

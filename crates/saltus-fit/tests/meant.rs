@@ -22,6 +22,101 @@ fn near(found: f64, e: f64) -> bool {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 12, failure_persistence: None, ..ProptestConfig::default() })]
 
+    /// Where names of balls stand above numbers by themselves, one that is not known is a name too.
+    #[test]
+    fn a_name_among_names_of_balls_names_one(e in 0.5f64..0.85, name in prop::sample::select(vec!["Zorb", "Quax xyl"]), form in 0usize..3) {
+        let cell = |h: f64, e: f64| match form {
+            0 => format!("{:.1}%", 100.0 * e * e),
+            1 => format!("{:.1} cm", h * e * e),
+            _ => format!("{:.1}", h * e * e),
+        };
+        let row = |h: f64| format!("{h},{},{},{}\n", cell(h, 0.9), cell(h, e), cell(h, 0.8));
+        let report = fit(&format!("Drop (cm),Golf ball,{name},Tennis ball\n{}", [150.0, 120.0, 100.0, 80.0].map(row).concat()));
+        let found = report.groups().iter().find(|g| g.name == name);
+        prop_assert!(found.is_some_and(|g| (g.report.cor().unwrap().value - e).abs() < 0.01), "{}", report);
+    }
+
+    /// Words where most are numbers say why a reading is missing: the drop is left aside.
+    #[test]
+    fn words_in_place_of_a_reading(e in 0.5f64..0.85, word in prop::sample::select(vec!["n/d", "too dark to see", "fehlt", "zorb"]), at in 0usize..6) {
+        let row = |n: usize| if n == at { format!("100,{word}\n") } else { format!("100,{:.2}\n", 100.0 * e * e) };
+        let report = fit(&format!("drop (cm),rebound (cm)\n{}", (0..6).map(row).collect::<String>()));
+        prop_assert!(near(report.cor().unwrap().value, e), "{}", report);
+        prop_assert!(report.left_aside().iter().any(|aside| aside.line == Some(at as u64 + 2)), "{}", report);
+    }
+
+    /// Times until rest that are counted are repeats of each drop, and not its bounces.
+    #[test]
+    fn times_until_rest_are_repeated(e in 0.6f64..0.9, count in 2usize..4) {
+        let names: Vec<String> = (1..=count).map(|n| format!("total time {n} (s)")).collect();
+        let row = |h: f64| {
+            let fall = (2.0 * h / 9.81f64).sqrt();
+            let cells: Vec<String> = (0..count).map(|_| format!("{:.3}", fall * (1.0 + e) / (1.0 - e))).collect();
+            format!("{},{}\n", 100.0 * h, cells.join(","))
+        };
+        let report = fit(&format!("drop height (cm),{}\n{}", names.join(","), [0.2, 0.3, 0.4, 0.5].map(row).concat()));
+        prop_assert!(near(report.cor().unwrap().value, e), "{}", report);
+    }
+
+    /// `T1` counts trials where no unit of time is stated, below the name of a ball or not, and the
+    /// heights of release stand beside all balls.
+    #[test]
+    fn a_capital_t_counts_trials(e in 0.5f64..0.85, balls: bool, unit in prop::sample::select(vec!["cm", "inches"])) {
+        let row = |h: f64| {
+            let cells = [e, e, e - 0.1, e - 0.1].map(|e| format!("{:.2}", h * e * e));
+            format!("{h},{}\n", cells[..if balls { 4 } else { 2 }].join(","))
+        };
+        let names = if balls { "Drop,Golf,,Tennis,\n,T1,T2,T1,T2" } else { "Drop,T1,T2" };
+        let report = fit(&format!("all heights in {unit}\n{names}\n{}", [60.0, 48.0, 36.0, 24.0].map(row).concat()));
+        let found: Vec<f64> = if balls { report.groups().iter().map(|g| g.report.cor().unwrap().value).collect() } else { vec![report.cor().unwrap().value] };
+        prop_assert!(found.iter().zip([e, e - 0.1]).all(|(a, b)| near(*a, b)) && found.len() == if balls { 2 } else { 1 }, "{}", report);
+    }
+
+    /// What an arrow points from at the end of a line is a remark, and so is a line below bars.
+    #[test]
+    fn remarks_behind_arrows_and_below_bars(e in 0.5f64..0.85, arrow in prop::sample::select(vec!["<- released", "<-- let go here", "← dropped"]), bars: bool) {
+        let by = if bars { " | " } else { "    " };
+        let row = |n: i32| format!("{n}{by}{:.1}{}\n", 150.0 * e.powi(2 * n), if n == 0 { format!("   {arrow}") } else { String::new() });
+        let report = fit(&format!("bounce{by}height\n{}(cm, read at the bottom)\n", (0..5).map(row).collect::<String>()));
+        prop_assert!(near(report.cor().unwrap().value, e), "{}", report);
+    }
+
+    /// Lengths of lines that were drawn are heights, and the brightness along them is none.
+    #[test]
+    fn lines_drawn_in_pictures(e in 0.5f64..0.85) {
+        let row = |n: i32| format!("{n},shot{n}.jpg,{}.2,{}.7,40,180,90.1,{:.2}\n", 9 - n, 95 + 7 * n % 20, 140.0 * e.powi(2 * n));
+        let report = fit(&format!(" ,Label,Area,Mean,Min,Max,Angle,Length\n{}", (0..5).map(row).collect::<String>()));
+        prop_assert!(near(report.cor().unwrap().value, e), "{}", report);
+    }
+
+    /// The name of a file may state the rate of its frames.
+    #[test]
+    fn the_name_of_a_file_states_a_rate(e in 0.6f64..0.85, name in prop::sample::select(vec!["impacts 240fps.csv", "drop_240_fps.csv", "a/b/Video-240fps.csv"])) {
+        let rows = (0..6).map(|n| format!("{n},{:.0}\n", 100.0 + 2400.0 * (1.0 - e.powi(n)) / (1.0 - e)));
+        let text = format!("impact,frame\n{}", rows.collect::<String>());
+        let table = Table::parse(name, text.as_bytes(), &ReadOptions::default()).unwrap();
+        prop_assert_eq!(table.frame_rate(), Some(240.0));
+        prop_assert!(Table::parse("impacts.csv", text.as_bytes(), &ReadOptions::default()).is_err());
+    }
+
+    /// A remark of as many names above numbers is their heading, whatever one of them is of.
+    #[test]
+    fn names_in_a_remark(e in 0.5f64..0.85, other in prop::sample::select(vec!["x", "mass"]), by in prop::sample::select(vec![" ", "  ", "\t"])) {
+        let rows = (0..6).map(|n| format!("{n}{by}{}{by}{:.2}\n", 12 + 7 * n, 150.0 * e.powi(2 * n)));
+        let report = fit(&format!("# made by a program\n# bounce{by}{other}{by}height_cm\n{}", rows.collect::<String>()));
+        prop_assert!(near(report.cor().unwrap().value, e), "{}", report);
+    }
+
+    /// Speeds on the way down and on the way up are those before and after the bounce.
+    #[test]
+    fn speeds_of_both_ways(e in 0.4f64..0.95, ways in prop::sample::select(vec![("down", "up"), ("runter", "rauf"), ("giu", "salita")]), turned: bool) {
+        let row = |v: f64| if turned { format!("{:.3};{v}\n", v * e) } else { format!("{v};{:.3}\n", v * e) };
+        let (down, up) = (format!("v {} (m/s)", ways.0), format!("v {} (m/s)", ways.1));
+        let names = if turned { format!("{up};{down}") } else { format!("{down};{up}") };
+        let report = fit(&format!("{names}\n{}", [2.0, 2.5, 3.0, 4.0].map(row).concat()));
+        prop_assert!(near(report.cor().unwrap().value, e), "{}", report);
+    }
+
     /// A column but for a word is read where no other holds what it does, and doubted; several that
     /// differ in that word alone have a COR each; beside one that is understood it is left aside.
     #[test]

@@ -227,7 +227,7 @@ const REFUSALS: &[(&str, u64, usize, &str)] = &[
     ("bounce,height_kg\n0,100\n", 1, 8, "'kg' in 'height_kg' is not a unit of length"),
     ("bounce,height (s)\n0,100\n", 1, 8, "'s' in 'height (s)' is not a unit of length"),
     ("bounce,time_cm\n0,100\n", 1, 8, "is not a unit of time"),
-    ("bounce,hight_cm\n0,100\n", 1, 8, "did you mean 'height_cm'?"),
+    ("bounce,hoighte_cm\n0,100\n", 1, 8, "did you mean 'height_cm'?"),
     ("bounce,wobble\n0,100\n", 1, 8, "'wobble' is not known"),
     ("bounce,height_cm,wobble\n0,100,big\n1,64,small\n", 1, 18, "--group 'wobble'"),
     ("height_cm,wobble\n100,3\n64,4\n", 1, 11, "The word 'wobble' is not understood"),

@@ -53,6 +53,24 @@ proptest! {
         prop_assert!(matches!(found.as_slice(), [("tennis", a), ("golf", b)] if (a - e).abs() < 2e-3 && (b - e - 0.1).abs() < 2e-3), "{:?}", found);
     }
 
+    /// A record that says that it does not count is left aside, and named.
+    #[test]
+    fn records_that_were_withdrawn_do_not_count(
+        e in 0.5f64..0.85, word in prop::sample::select(vec![("discarded", true), ("rejected", true), ("valid", false)]),
+    ) {
+        let run = |n: usize, e: f64, said: &str| {
+            let list: Vec<String> = (0..5).map(|k| format!("{:.1}", 200.0 * e.powi(2 * k))).collect();
+            format!("{{\"run\": {n}{said}, \"heights_cm\": [{}]}}", list.join(", "))
+        };
+        let withdrawn = format!(", \"{}\": {}", word.0, word.1);
+        let kept = format!(", \"{}\": {}", word.0, !word.1);
+        for beside in ["", kept.as_str()] {
+            let report = fit(&format!("[{}, {}, {}]", run(1, e, beside), run(2, e - 0.1, &withdrawn), run(3, e, beside)));
+            prop_assert!(report.groups().is_empty() && (report.cor().unwrap().value - e).abs() < 2e-3, "{}", report);
+            prop_assert!(report.left_aside().iter().any(|aside| aside.why == saltus_fit::Why::Void), "{}", report);
+        }
+    }
+
     /// Names and numbers of one drop in a line, however they are parted.
     #[test]
     fn one_drop_in_a_line(

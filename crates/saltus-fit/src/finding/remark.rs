@@ -189,12 +189,12 @@ pub enum Note {
         /// The encoding's name.
         encoding: String,
     },
-    /// A line states the frame rate, or that of the samples of a sound.
+    /// A line states the frame rate, or that of the samples of a sound; or the name of the file.
     Rate {
         /// The rate, 1/s.
         rate: f64,
-        /// The line.
-        line: u64,
+        /// The line; none for the name.
+        line: Option<u64>,
     },
     /// A sound was listened to.
     Heard {

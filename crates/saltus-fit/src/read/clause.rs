@@ -35,15 +35,27 @@ pub(super) fn names_rate(name: &str) -> bool {
     Phrase::Rate.is(bare.trim().trim_end_matches(" hz"))
 }
 
+/// Whether a word says that a number was not measured.
+fn turns(word: &Word) -> bool {
+    word.is(Atom::Goal) || turns_away(word)
+}
+
+/// The same in brackets behind a height of release: a rule asks for it, `254 cm (ITF)`.
+fn turns_away(word: &Word) -> bool {
+    [Atom::Predicted, Atom::Lost, Atom::Derived].iter().any(|atom| word.is(*atom))
+}
+
 /// `Drop height: 1 m`, `Drop height (cm) 100`, `tested, dropped from 100 cm onto stone`: of the
 /// clause that states it every word up to the number has to be understood.
 pub(super) fn drop(text: &str) -> Option<DropHeight> {
     // `our ball (dropped from 1 m)`.
-    clauses(text).chain(bracketed(text)).find_map(|clause| {
-        let turned = [Atom::Predicted, Atom::Goal, Atom::Lost, Atom::Derived];
-        let turns = |w: &Word| turned.iter().any(|atom| w.is(*atom));
+    clauses(text).chain(bracketed(text)).chain(dashed(text)).find_map(|clause| {
         let plain = |w: &Word| !matches!(w.kind, Kind::Unknown | Kind::Number(_)) && !turns(w);
         if let Some((height, before, after)) = released(clause) {
+            // What brackets hold behind it is a remark.
+            let remark = after.trim_start().strip_prefix('(').and_then(|after| after.split_once(')'));
+            let after =
+                remark.filter(|(inside, _)| !split(inside).iter().any(turns_away)).map_or(after, |(_, rest)| rest);
             // The sign that stands for it: `Fallhöhe h0 = 1 m`.
             let named = before.trim_end_matches([' ', '=', ':', '(']);
             let sign = ["h0", "h_0", "h₀"].iter().find_map(|sign| named.strip_suffix(sign));
@@ -83,6 +95,19 @@ pub(super) fn clauses(text: &str) -> impl Iterator<Item = &str> {
     text.split([';', '!']).flat_map(|part| part.split(", ")).flat_map(|part| part.split(". "))
 }
 
+/// The parts of a title that dashes tell apart, `Golf ball - dropped from 1 m`, each up to a remark
+/// in brackets.
+fn dashed(text: &str) -> Vec<&str> {
+    let parts = [" -- ", " - ", " – ", " — "].iter().flat_map(|dash| text.split(*dash));
+    // What a bracket turns, or measures in, it belongs to.
+    let belongs = |inside: &str| {
+        let inside = inside.split(')').next().unwrap_or_default();
+        Unit::parse(inside).is_some() || split(inside).iter().any(turns_away)
+    };
+    let bare = |part: &'_ str| part.find('(').filter(|at| !belongs(&part[at + 1..])).unwrap_or(part.len());
+    parts.map(|part| part[..bare(part)].trim()).filter(|part| *part != text).collect()
+}
+
 /// What stands in brackets, a clause of its own.
 fn bracketed(text: &str) -> Option<&str> {
     text.split_once('(').and_then(|(_, rest)| rest.split_once(')')).map(|(inside, _)| inside)
@@ -102,7 +127,10 @@ pub(super) fn of_clauses(text: &str) -> Option<Unit> {
         let unit = Unit::parse(unit).filter(|unit| !unit.unscaled())?;
         split(name).iter().all(plain).then_some(unit)
     };
-    let of_brackets = || bracketed(text).and_then(|text| unit(text).or_else(|| inside(text)));
+    // `(cm, read at the bottom)`: a letter by itself may be anything.
+    let whole =
+        |text: &str| clauses(text).find_map(|part| Unit::parse(part).filter(|unit| part.len() > 1 && !unit.unscaled()));
+    let of_brackets = || bracketed(text).and_then(|text| unit(text).or_else(|| inside(text)).or_else(|| whole(text)));
     // A title ends in the unit of what stands below it: `Golf ball (cm)`.
     let ends = || {
         let (title, unit) = text.trim().strip_suffix(')')?.rsplit_once('(')?;
@@ -110,7 +138,8 @@ pub(super) fn of_clauses(text: &str) -> Option<Unit> {
         let plain = title.contains(char::is_alphabetic) && !title.contains(|c: char| c.is_ascii_digit());
         (plain && matches!(unit.dimension, Dimension::Length | Dimension::Time)).then_some(unit)
     };
-    unit(text).or_else(|| clauses(text).find_map(named)).or_else(of_brackets).or_else(ends)
+    let parts = || clauses(text).chain(dashed(text)).find_map(named);
+    unit(text).or_else(parts).or_else(of_brackets).or_else(ends)
 }
 
 /// `Uncertainty in heights: ±1 cm`: the standard error of all readings of a dimension, in SI units.
@@ -202,6 +231,12 @@ mod tests {
             ("Bonjour, voici la balle (lâchée de 1,20 m)", None, Some(1.2)),
             ("abbiamo lasciato cadere la pallina da 1 metro.", None, Some(1.0)),
             ("Zorb and I dropped the ball from 1.5 m", None, Some(1.5)),
+            ("Air times -- ball dropped from 1.00 m every time", None, Some(1.0)),
+            ("ZORB (double zorb) - drop 90 cm", None, Some(0.9)),
+            ("Drop height: 254 cm (ITF)", None, Some(2.54)),
+            ("Rebound of spheres dropped from 80 cm (ten drops each)", None, Some(0.8)),
+            ("Rebound of spheres dropped from 80 cm (predicted)", None, None),
+            ("Bollen släpptes från 2,00 m", None, Some(2.0)),
             ("Zorb dropped the ball beside a 2 m rule", None, None),
             ("Zorb dropped a ball of 5 cm", None, None),
             ("Zorb dropped the wobble from 2 m", None, None),
@@ -226,6 +261,14 @@ mod tests {
             let found = unit(text).map(|unit| (unit.dimension, unit.si(1.0)));
             let expected = of_time.map(|s| (Dimension::Time, s)).or(metres.map(|m| (Dimension::Length, m)));
             assert_eq!(found, expected, "{text}");
+        }
+        for (text, metres) in [
+            ("Rebound heights (cm) - every ball dropped from 1.00 m", Some(0.01)),
+            ("peak height in metres (first number = where it was dropped)", Some(1.0)),
+            ("(cm, read at the bottom of the ball)", Some(0.01)),
+            ("(m, read by Ann)", None),
+        ] {
+            assert_eq!(of_clauses(text).map(|unit| unit.si(1.0)), metres, "{text}");
         }
         for (text, metres) in [
             ("all in cm", Some(0.01)),

@@ -4,6 +4,7 @@
 use saltus_bounce::units::Quantity;
 
 use super::aside::{LeftAside, Part as Kind, Why};
+use super::clause;
 use super::columns::Columns;
 use super::datum::Datum;
 use super::foreign;
@@ -108,8 +109,10 @@ fn joined_up<'a>(
     }
     // A film is of one rate; above each table its own height of release may stand.
     let mut stated = Vec::new();
+    let called = || Some((clause::frame_rate(&grid.called())?, None));
+    let said = || titles.iter().find_map(|title| title.fps).map(|(fps, line)| (fps, Some(line)));
     if metadata.frame_rate.is_none()
-        && let Some((fps, line)) = titles.iter().find_map(|title| title.fps)
+        && let Some((fps, line)) = said().or_else(called)
     {
         metadata.frame_rate = Some(fps);
         stated.push(Note::Rate { rate: fps, line }.into());
@@ -300,7 +303,7 @@ fn sheets(name: &str, parts: Vec<Part>, options: &ReadOptions) -> Result<Table, 
         let why = match &options.sheet {
             Some(sheet) if label.eq_ignore_ascii_case(sheet.trim()) || stem(&label) == sheet.trim() => None,
             Some(_) => Some(Why::NotChosen),
-            None if part.hidden => Some(Why::Hidden),
+            None if part.aside.is_some() => part.aside,
             None if title::names_no_readings(&label) => Some(Why::Predicted),
             None if all && stem(&label) != "All" => Some(Why::Elsewhere),
             None => None,

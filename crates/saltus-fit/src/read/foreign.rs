@@ -245,7 +245,7 @@ impl Page {
                 self.close_row();
                 if let Some(text) = self.table.take().filter(|_| self.parts.len() < MANY) {
                     let name = format!("table {}", self.parts.len() + 1);
-                    self.parts.push(Part { name, hidden: false, content: Content::Cells(text) });
+                    self.parts.push(Part { name, aside: None, content: Content::Cells(text) });
                 }
             }
             _ => {}

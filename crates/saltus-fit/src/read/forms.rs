@@ -4,6 +4,8 @@
 
 mod blocks;
 mod counted;
+mod laps;
+mod latex;
 mod noted;
 mod printed;
 mod sentences;
@@ -30,7 +32,8 @@ pub(super) fn table(text: &str) -> Option<String> {
         return None;
     }
     let forms = [
-        latex,
+        latex::table,
+        laps::table,
         wiki::table,
         blocks::led,
         blocks::table,
@@ -235,58 +238,6 @@ fn measured(line: &str) -> Option<(&str, &str)> {
     (unit && words).then_some((name, last.number))
 }
 
-/// A line of LaTeX without what is struck out in it, which was withdrawn by who wrote it.
-fn kept(line: &str) -> String {
-    let mut found = line.to_owned();
-    while let Some((at, from)) = STRUCK.iter().find_map(|c| found.find(c).map(|at| (at, at + c.len()))) {
-        let end = found[from..].find('}').map_or(found.len(), |end| from + end + 1);
-        found.replace_range(at..end, "");
-    }
-    found
-}
-
-/// Commands of LaTeX that strike out what follows.
-const STRUCK: [&str; 6] = [r"\sout{", r"\xout{", r"\st{", r"\cancel{", r"\bcancel{", r"\xcancel{"];
-
-/// A table of LaTeX, whose rows end in `\\` and whose cells are parted by `&`, with tabs in their
-/// place; `None` if it is none. A line stays a line.
-fn latex(text: &str) -> Option<String> {
-    // A remark goes from its sign to the end of the line.
-    let said = |line: &str| {
-        let sign = line.match_indices('%').map(|(at, _)| at).find(|&at| !line[..at].ends_with('\\'));
-        line[..sign.unwrap_or(line.len())].to_owned()
-    };
-    let row = |line: &str| {
-        let line = kept(&said(line));
-        let (cells, after) = line.rsplit_once(r"\\")?;
-        let ends = after.trim().is_empty() || after.trim_start().starts_with('\\');
-        (ends && cells.contains('&')).then(|| cells.replace('&', "\t"))
-    };
-    if text.lines().filter(|line| row(line).is_some()).count() < 2 {
-        return None;
-    }
-    let plain = |line: &str| match row(line) {
-        Some(cells) => unmarked(&cells),
-        None if line.trim_start().starts_with('\\') => String::new(),
-        None => line.to_owned(),
-    };
-    Some(text.lines().map(plain).collect::<Vec<_>>().join("\n") + "\n")
-}
-
-/// A row of LaTeX without what sets it: `{$h_0$ / \si{\centi\metre}}` is `h_0 / centimetre`. What
-/// brackets follow sets what is in these, other commands are words, parts of units among them.
-fn unmarked(row: &str) -> String {
-    let spelt = row.replace(r"\pm", "±").replace(r"\%", "%").replace(r"\,", " ").replace(r"\per", "/");
-    let mut parts = spelt.split('\\');
-    let mut found = parts.next().unwrap_or_default().to_owned();
-    for part in parts {
-        let end = part.find(|c: char| !c.is_ascii_alphabetic()).unwrap_or(part.len());
-        let sets = part[end..].starts_with('{') && !matches!(&part[..end], "frac" | "sqrt");
-        found.push_str(&part[if sets { end } else { 0 }..]);
-    }
-    found.replace("}{", " ").replace(['$', '{', '}'], "")
-}
-
 /// Marks between one height and the next.
 const ARROWS: [&str; 9] = ["-->", "->", "=>", ">", "→", "⟶", "⇒", "➔", "➜"];
 
@@ -346,7 +297,9 @@ fn patterned(text: &str) -> Option<String> {
         return None;
     }
     let patterns: Vec<Option<Vec<String>>> = lines.iter().map(|line| pattern(line)).collect();
-    let first = patterns.iter().flatten().next()?;
+    let times = |one: &&Vec<String>| patterns.iter().flatten().filter(|other| other == one).count();
+    // Of those that most lines have the first.
+    let first = patterns.iter().flatten().rev().max_by_key(times)?;
     let alike = |n: usize| patterns[n].as_ref() == Some(first);
     let rows: Vec<usize> = (0..lines.len()).filter(|&n| alike(n)).collect();
     let filled = lines.iter().filter(|line| !parts(line).0.is_empty()).count();
@@ -430,6 +383,10 @@ mod tests {
             ("in cm\n100→64\n80→51\n", "in cm\nheight before\theight 1\r100\t64\n80\t51\n"),
             ("Filmed it. h0=1m, h1=64cm, h2=41cm.\n", "h0\th1\th2\r1m\t64cm\t41cm\n"),
             ("Clip   1\ntouch 1   frame 118\ntouch 2   frame 268\n", "Clip   1\ntouch\tframe\r1\t118\n2\t268\n"),
+            (
+                "v 0.3\nready after 5 ms\nhit 1 at 102 ms\nhit 2 at 707 ms\n",
+                "v 0.3\nready after 5 ms\nhit\tat\r1\t102 ms\n2\t707 ms\n",
+            ),
             ("hit 1  t_ms=102  peak=80\nhit 2  t_ms=707  peak=58\n", "hit\tt_ms\tpeak\r1\t102\t80\n2\t707\t58\n"),
             (
                 "Dropped from 1.0 m, came back to 64 cm.\nDropped from 2.0 m, came back to 1.3 m.\n",

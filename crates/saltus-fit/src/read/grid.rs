@@ -59,6 +59,13 @@ impl<'a> Grid<'a> {
         Ok(grid)
     }
 
+    /// What the file and the sheet are called, without the folder and the end: as words.
+    pub(super) fn called(&self) -> String {
+        let file = self.name.rsplit(['/', '\\']).next().unwrap_or(self.name);
+        let stem = file.rsplit_once('.').map_or(file, |(stem, _)| stem);
+        format!("{stem} {}", self.tab.unwrap_or_default()).replace(['_', '-'], " ").trim().to_owned()
+    }
+
     fn fill(&mut self) -> Result<(), TableError> {
         let mut reader = ReaderBuilder::new()
             .delimiter(self.delimiter)
@@ -359,10 +366,13 @@ fn ruled(record: &StringRecord) -> bool {
 /// The delimiter of the first lines of a text.
 fn delimiter<'a>(lines: impl Iterator<Item = &'a str>) -> u8 {
     let lines: Vec<&str> = lines.collect();
-    let number = |cell: &str| cell.parse::<f64>().is_ok();
+    let number = |cell: &str| cell.parse::<f64>().is_ok() || cell::clock(cell).is_some();
     let piped = lines.iter().filter(|line| line.contains('|')).count();
     // A table drawn in characters has lines that are rules, or bars in every line.
-    if piped > 0 && lines.iter().any(|line| rule(line)) || piped > 1 && piped == lines.len() {
+    // Below one there may be a remark.
+    let bars = |line: &&&str| line.matches('|').count() == lines[0].matches('|').count();
+    let drawn = piped == lines.len() || lines.iter().filter(bars).count() == piped && 2 * piped > lines.len();
+    if piped > 0 && lines.iter().any(|line| rule(line)) || piped > 1 && drawn {
         return b'|';
     }
     match [b'\t', b';', b','].into_iter().find(|&mark| separates(&lines, mark)) {

@@ -5,7 +5,6 @@ mod inside;
 mod meaning;
 
 use super::aside::Why;
-use super::phrases::Phrase;
 use super::units::{Dimension, Scale, Unit};
 use super::vocabulary::{Atom, folded, misspelt, narrow, short_for};
 use super::words::{Kind, Word, numbers, split, unaddressed};
@@ -153,7 +152,7 @@ impl Heading {
             labels: Vec::new(),
         };
         // The format of a clock, such as `mm:ss.ms`.
-        if of_a_clock(text) {
+        if inside::of_a_clock(text) {
             return Self::parse("time (s)").called(text);
         }
         if let Some(sign) = inside::computed(text) {
@@ -264,7 +263,9 @@ impl Heading {
             let letter = name.chars().next_back().filter(|c| matches!(c, 'x' | 'y' | 'X' | 'Y'))?;
             let stem = name.strip_suffix(letter)?;
             // What a colon ends is the name of the run.
-            let apart = stem.ends_with(['_', ' ', '.', '-'])
+            // `cx` beside `cy`.
+            let joined = stem.chars().all(char::is_lowercase) && letter.is_lowercase();
+            let apart = (joined || stem.ends_with(['_', ' ', '.', '-', '/']))
                 && !stem.trim_end().ends_with(':')
                 && stem.contains(char::is_alphabetic);
             apart.then(|| (stem.to_owned(), letter, format!("{letter} {}", &text[end..])))
@@ -364,6 +365,12 @@ impl Heading {
             return text.to_owned();
         };
         let error = error.trim();
+        // `mean ± SD of 5`: what each cell holds, and no number.
+        let of_cells = |w: &Word| w.is(Atom::Error) || w.is(Atom::Filler) || matches!(w.kind, Kind::Number(_));
+        let words = split(error.trim_end_matches([')', ']']));
+        if words.first().is_some_and(|w| w.is(Atom::Error)) && words.iter().all(of_cells) {
+            return name.trim_end().to_owned();
+        }
         let digits = error.find(|c: char| !(c.is_ascii_digit() || matches!(c, '.' | ','))).unwrap_or(error.len());
         let spread: Option<f64> = error[..digits].replace(',', ".").parse().ok();
         let closes = error[digits..].ends_with([')', ']']);
@@ -402,7 +409,7 @@ impl Heading {
                 self.unit = self.unit.or(Some(Unit::OTHER));
             } else if inside == "h" && timed() {
                 self.unit = self.unit.or(Some(Unit::HOUR));
-            } else if of_a_clock(inside) {
+            } else if inside::of_a_clock(inside) {
                 left.push_str("time ");
             } else if let Some(error) = error.map(str::trim) {
                 let digits = error.find(|c: char| !(c.is_ascii_digit() || c == '.' || c == ',')).unwrap_or(error.len());
@@ -410,7 +417,10 @@ impl Heading {
                 self.unit = self.unit.or(Unit::parse(&error[digits..]));
             } else if let Some(unit) = Unit::parse(inside.strip_prefix("in ").unwrap_or(inside)).filter(|_| !argument) {
                 self.unit = self.unit.or(Some(unit));
-            } else if !(argument && matches!(inside, "t" | "x") || of_units(inside) || asks_for_unit(inside)) {
+            } else if !(argument && matches!(inside, "t" | "x")
+                || inside::of_units(inside)
+                || inside::asks_for_unit(inside))
+            {
                 // A symbol behind a name is what the name is, and names nothing itself: `drop [H]`.
                 left.push_str(match inside {
                     "h" | "H" if !left.trim().is_empty() => "height",
@@ -469,30 +479,6 @@ impl Heading {
             words.clear();
         }
     }
-}
-
-/// Whether a text lists units of one kind, `ft, in`: each cell names its own.
-fn of_units(text: &str) -> bool {
-    let units = text.split([',', '/', '&', ' ']).filter(|word| !word.is_empty() && !Phrase::And.is(word));
-    let mut found = units.map(|word| Unit::parse(word).map(|unit| unit.dimension));
-    let first = found.next().flatten();
-    let mut rest = found.peekable();
-    first.is_some() && rest.peek().is_some() && rest.all(|dimension| dimension == first)
-}
-
-/// Whether a text asks for units behind the numbers, `with unit!`.
-fn asks_for_unit(text: &str) -> bool {
-    let words = split(text);
-    words.iter().any(|word| word.is(Atom::Measure)) && words.iter().all(|w| w.is(Atom::Measure) || w.is(Atom::Filler))
-}
-
-/// Whether a text is the format of a clock: `min:sec`, `hh:mm:ss.ms`.
-fn of_a_clock(text: &str) -> bool {
-    let part = |part: &str| {
-        let zeros = !part.is_empty() && part.chars().all(|c| c == '0');
-        zeros || matches!(&*folded(part), "h" | "hh" | "m" | "mm" | "min" | "s" | "ss" | "sec" | "ms" | "sss" | "f")
-    };
-    text.contains(':') && text.split([':', '.', ',']).all(part)
 }
 
 #[cfg(test)]

@@ -8,8 +8,10 @@ use std::fmt;
 
 use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 
+use super::aside::Why;
 use super::cell::{self, Cell};
 use super::heading::{Heading, Meaning};
+use super::judged;
 use super::limits::{self, CELLS, MANY};
 use super::sheet::{Content, Part};
 use super::units::{Dimension, Unit};
@@ -171,14 +173,23 @@ fn printed(text: &str) -> Option<Vec<Node>> {
 }
 
 /// Gathers the tables in a value called `name`; `above` are lines that what encloses it states.
+/// Those of a value that says that it does not count are set aside.
 fn tables(name: &str, node: &Node, above: &str, found: &mut Vec<Part>) {
     if found.len() >= MANY {
         return;
     }
+    let withdrawn = |(name, node): &(String, Node)| node.cell().is_some_and(|cell| judged::withdraws(name, cell));
+    let aside = node.members().iter().any(withdrawn).then_some(Why::Void);
+    let from = found.len();
+    gathered(name, node, above, found);
+    found[from..].iter_mut().for_each(|part| part.aside = part.aside.or(aside));
+}
+
+fn gathered(name: &str, node: &Node, above: &str, found: &mut Vec<Part>) {
     let mut push = |rows: Option<String>| {
         let Some(rows) = rows else { return };
         let name = if name.is_empty() { format!("table {}", found.len() + 1) } else { name.to_owned() };
-        found.push(Part { name, hidden: false, content: Content::Cells(format!("{above}{rows}")) });
+        found.push(Part { name, aside: None, content: Content::Cells(format!("{above}{rows}")) });
     };
     if let Some(records) = node.records() {
         return push(rows(&records));
@@ -209,7 +220,7 @@ fn tables(name: &str, node: &Node, above: &str, found: &mut Vec<Part>) {
     let Node::List(list) = node else { return };
     if let Some(rows) = nested(name, list) {
         let name = if name.is_empty() { format!("table {}", found.len() + 1) } else { name.to_owned() };
-        found.push(Part { name, hidden: false, content: Content::Cells(format!("{above}{rows}")) });
+        found.push(Part { name, aside: None, content: Content::Cells(format!("{above}{rows}")) });
         return;
     }
     for (n, member) in list.iter().enumerate() {
@@ -218,7 +229,7 @@ fn tables(name: &str, node: &Node, above: &str, found: &mut Vec<Part>) {
             let unit = |unit: Unit| unit.dimension != Dimension::Other;
             matches!(cell::read(cell, false), Cell::Number(m) if m.unit.is_some_and(unit))
         };
-        let words = |cell: &&str| cell.contains(char::is_alphabetic) && !measured(cell);
+        let words = |cell: &&str| cell.contains(char::is_alphabetic) && !measured(cell) && !judged::answers(cell);
         let called = member.members().iter().filter_map(|(_, node)| node.cell()).find(words);
         tables(&called.map_or_else(|| format!("trial {}", n + 1), str::to_owned), member, above, found);
     }

@@ -4,6 +4,7 @@
 use std::collections::HashSet;
 
 use super::columns::{Column, Columns, Kind};
+use super::heading::Heading;
 use super::phrases::Phrase;
 use super::region::Region;
 use super::vocabulary::{Atom, ROWS, folded, footnotes, meanings};
@@ -39,6 +40,18 @@ fn answer(cell: &str) -> Answer {
         Some(WordKind::Number(1)) => Answer::Yes,
         _ => Answer::Other,
     }
+}
+
+/// Whether a cell answers a question, `true`, and says nothing else.
+pub(super) fn answers(cell: &str) -> bool {
+    matches!(answer(cell), Answer::Yes | Answer::No)
+}
+
+/// Whether a name and the cell beside it say that what they stand in does not count: `discarded:
+/// true`, `valid: no`.
+pub(super) fn withdraws(name: &str, cell: &str) -> bool {
+    let heading = Heading::parse(name);
+    heading.has(Atom::Void) && answer(cell) == Answer::Yes || heading.has(Atom::Counts) && answer(cell) == Answer::No
 }
 
 /// Whether a remark says that its row does not count: `discarded`, `not used`.

@@ -8,6 +8,7 @@ mod clause;
 mod columns;
 mod datum;
 mod drops;
+mod encoding;
 mod file;
 mod foreign;
 mod forms;

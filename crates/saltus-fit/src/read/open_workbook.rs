@@ -6,6 +6,7 @@ use std::collections::HashSet;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
+use super::aside::Why;
 use super::foreign::entity;
 use super::limits;
 use super::sheet::{Content, Part, Rows, too_much};
@@ -115,7 +116,11 @@ impl Book {
             "table" => {
                 if let Some((name, hidden, rows)) = self.sheet.take() {
                     self.left = rows.left;
-                    self.parts.push(Part { name, hidden, content: Content::Cells(rows.text) });
+                    self.parts.push(Part {
+                        name,
+                        aside: hidden.then_some(Why::Hidden),
+                        content: Content::Cells(rows.text),
+                    });
                 }
             }
             _ => {}

@@ -72,10 +72,12 @@ pub(super) enum Phrase {
     According,
     /// A sheet holds what is drawn from others.
     Chart,
+    /// On the way to the floor, beside what is on the way up.
+    Down,
 }
 
 impl Phrase {
-    const ALL: [(&'static str, Self); 32] = [
+    const ALL: [(&'static str, Self); 33] = [
         ("missing", Self::Missing),
         ("about", Self::About),
         ("half", Self::Half),
@@ -108,6 +110,7 @@ impl Phrase {
         ("wall", Self::Wall),
         ("according", Self::According),
         ("chart", Self::Chart),
+        ("down", Self::Down),
     ];
 
     /// The phrases of this kind, in the order of the file.

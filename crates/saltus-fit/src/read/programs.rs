@@ -52,6 +52,9 @@ pub(super) fn tables<'a>(
     if let Some(found) = by_hand(view) {
         return Ok(found);
     }
+    if let Some(found) = results(view) {
+        return Ok(found);
+    }
     if let Some(found) = tracker(view, options) {
         return Ok(found);
     }
@@ -211,6 +214,18 @@ fn by_hand(view: View<'_>) -> Option<Recognised<'_>> {
     };
     let regions = tracks.iter().map(region).collect();
     Some(Recognised { program: Some(Program::ImageJ), regions, tracks: true })
+}
+
+/// What `ImageJ` measures of lines that were drawn, each as long as the ball was high: `Length`
+/// beside the brightness along them, `Mean`, `Min`, `Max`. `None` where it is none of it.
+fn results(view: View<'_>) -> Option<Recognised<'_>> {
+    let grey = ["mean", "min", "max"].iter().all(|name| position(view, 0, name).is_some());
+    let column = position(view, 0, "length").filter(|_| grey)?;
+    let rows = (1..view.rows()).filter(|&row| view.is_number(row, column)).collect();
+    let header = picked(view.width(0), &[(column, "height")]);
+    let units = (None, Some(Unit::PIXEL));
+    let region = Region { units, chosen: true, ..Region::new(view, header, 0, rows) };
+    Some(Recognised { program: Some(Program::ImageJ), regions: vec![region], tracks: false })
 }
 
 /// Names for the columns `chosen`, and none for the others.

@@ -186,7 +186,8 @@ impl Columns {
         let rows = self.number().is_some_and(|(_, sure)| sure);
         let numbered = |v: &Value| match v.at {
             At::Nth(n)
-                if (rows || matches!(v.what, What::Height | What::Unsaid | What::Interval)) && v.trial.is_empty() =>
+                if (rows || matches!(v.what, What::Height | What::Unsaid | What::Interval | What::Total))
+                    && v.trial.is_empty() =>
             {
                 Some(n)
             }
@@ -206,7 +207,9 @@ impl Columns {
         }
         let mean = self.columns.iter().any(|c| c.heading.has(Atom::Mean) && c.kind == Kind::Aside);
         let averaged = mean && (drop.is_some() || released);
-        if !rows && !averaged && !level(region, drop, &nth, mean || released) {
+        // A time until rest is that of a drop, and of no bounce.
+        let totals = drop.is_some() && nth.iter().all(|&n| self.columns[n].holds(What::Total));
+        if !rows && !averaged && !totals && !level(region, drop, &nth, mean || released) {
             return;
         }
         let names: Vec<String> = nth.iter().map(|&n| self.columns[n].heading.text.clone()).collect();

@@ -1,13 +1,14 @@
 //! A table of a file of several, as text: a sheet of a workbook, or a file of an archive.
 
+use super::aside::Why;
 use super::limits::{self, MANY};
 
 /// One table of a file of several.
 pub(super) struct Part {
     /// The name of the sheet, or of the file in the archive.
     pub(super) name: String,
-    /// The workbook does not show it.
-    pub(super) hidden: bool,
+    /// Why it is not read unless asked for: the file hides it, or says that it does not count.
+    pub(super) aside: Option<Why>,
     /// The sheet's cells, separated by tabs, or the bytes of the file.
     pub(super) content: Content,
 }

@@ -4,8 +4,9 @@ use std::borrow::Cow;
 use std::ops::Range;
 
 use super::cell::{self, Cell};
+use super::encoding::decoded;
 use super::forms;
-use super::heading::Heading;
+use super::heading::{Heading, Meaning};
 use super::limits::MANY;
 use super::units::Unit;
 use super::wrapped;
@@ -38,6 +39,7 @@ pub(super) fn text<'a>(name: &str, bytes: &'a [u8]) -> Result<Text<'a>, TableErr
     let around = [
         forms::dumped,
         wrapped::pictured,
+        wrapped::pointed,
         wrapped::quoted,
         wrapped::commented,
         wrapped::lettered,
@@ -104,9 +106,12 @@ fn names_in_comment(text: &str) -> Option<usize> {
     let (mark, count) = [",", ";", "\t", "  ", " "].iter().find_map(|mark| Some((*mark, numbers(mark)?)))?;
     let names = |mark: &str| {
         let names = cells(comment, mark);
-        // Of names that more than a blank parts two may be all that are understood.
-        let known = names.iter().filter(|name| Heading::parse(name).understood()).count();
-        names.len() == count && (known == count || mark != " " && known > 1)
+        let headings: Vec<Heading> = names.iter().map(|name| Heading::parse(name)).collect();
+        let known = headings.iter().filter(|heading| heading.understood()).count();
+        // Others are of something else; where more than a blank parts them, of anything.
+        let other = |heading: &Heading| heading.unknown.is_empty() && heading.meaning != Meaning::Empty;
+        let said = known == count || known > 1 && (mark != " " || headings.iter().all(other));
+        names.len() == count && said
     };
     // Names that blanks part may hold one.
     (names(mark) || mark == " " && names("  ")).then_some(at)
@@ -298,38 +303,4 @@ fn of_cells<'a>(text: &str, lines: impl Iterator<Item = &'a str> + Clone) -> Opt
     let whole = if rows > 2 { within } else { lines.clone().count() };
     let found = rows > 1 && lines.clone().filter(alike).all(decimal) && 3 * table >= 2 * whole;
     found.then_some(width)
-}
-
-fn decoded(bytes: &[u8]) -> (Cow<'_, str>, Option<&'static str>) {
-    if let Some(little) = utf16(bytes) {
-        let bytes = bytes.strip_prefix(&[0xFF, 0xFE]).or(bytes.strip_prefix(&[0xFE, 0xFF])).unwrap_or(bytes);
-        let unit = |pair: &[u8]| match *pair {
-            [a, b] if little => u16::from_le_bytes([a, b]),
-            [a, b] => u16::from_be_bytes([a, b]),
-            // Half a character at the end.
-            _ => 0xFFFD,
-        };
-        let characters = char::decode_utf16(bytes.chunks(2).map(unit));
-        let text = characters.map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER)).collect();
-        return (Cow::Owned(text), Some("UTF-16"));
-    }
-    let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
-    match std::str::from_utf8(bytes) {
-        Ok(text) => (Cow::Borrowed(text), None),
-        // What is no UTF-8 was written by a program that knew one byte a character: Latin-1, near
-        // enough.
-        Err(_) => (Cow::Owned(bytes.iter().map(|&b| char::from(b)).collect()), Some("Latin-1")),
-    }
-}
-
-/// Whether this is UTF-16, and then whether its low byte comes first: by its mark, or by the zeros
-/// between Latin letters.
-fn utf16(bytes: &[u8]) -> Option<bool> {
-    match bytes {
-        [0xFF, 0xFE, ..] => Some(true),
-        [0xFE, 0xFF, ..] => Some(false),
-        [a, 0, b, 0, ..] if *a != 0 && *b != 0 => Some(true),
-        [0, a, 0, b, ..] if *a != 0 && *b != 0 => Some(false),
-        _ => None,
-    }
 }

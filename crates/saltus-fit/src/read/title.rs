@@ -46,6 +46,10 @@ pub(super) fn stated(region: &Region<'_>) -> Stated {
         let alone = |row: &usize| (1..grid.width(*row)).all(|n| grid.cell(*row, n).is_empty());
         let said = (0..grid.rows().min(ROWS)).filter(alone).flat_map(|row| of_clauses(grid.cell(row, 0)));
         said.for_each(|unit| found.of_all(unit));
+        // A remark may stand beside them.
+        let lines = (0..grid.rows().min(ROWS)).flat_map(|row| (0..grid.width(row)).map(move |n| (row, n)));
+        let mut drops = lines.filter_map(|(row, n)| Some((drop(grid.cell(row, n))?, grid.line(row))));
+        found.drop = drops.next();
         return found;
     }
     let headings = region.header.iter().filter_map(|name| Heading::parse(name).rate);

@@ -206,7 +206,7 @@ pub(super) fn nearest(word: &str) -> Option<&'static str> {
 /// More rows than these are not looked through for words, nor comments.
 pub(super) const ROWS: usize = 200;
 
-/// Words of fewer letters may well be others.
+/// Words of fewer letters may well be others; one of them may be missing in what is misspelt.
 const MISSPELT: usize = 6;
 
 /// The word that a misspelt one is meant to be: it begins with the same letter, and one letter is
@@ -224,7 +224,7 @@ pub(super) fn misspelt(word: &str) -> Option<(&'static str, &'static [Atom])> {
         return words().find(|(known, _)| *known == spelt);
     }
     let letters = word.chars().count();
-    if letters < MISSPELT || word.contains(|c: char| !c.is_alphabetic()) {
+    if letters + 1 < MISSPELT || word.contains(|c: char| !c.is_alphabetic()) {
         return None;
     }
     let begins = word.chars().next();

@@ -11,6 +11,7 @@ use std::panic::{UnwindSafe, catch_unwind};
 use calamine::{Data, DataRef, Reader, Sheet, SheetVisible, Xls, Xlsx, XlsxError};
 use zip::ZipArchive;
 
+use super::aside::Why;
 use super::limits::{self, MANY};
 use super::sheet::{Content, Part, Rows};
 use super::{old_workbook, open_workbook};
@@ -68,7 +69,7 @@ fn archive(name: &str, bytes: &[u8]) -> Result<Vec<Part>, TableError> {
         let read = file.take(left + 1).read_to_end(&mut content);
         let size = read.map_err(|e| broken(name, "archive", &e.to_string()))? as u64;
         left = left.checked_sub(size).ok_or_else(|| broken(name, "archive", &too_large()))?;
-        parts.push(Part { name: entry.clone(), hidden: false, content: Content::Bytes(content) });
+        parts.push(Part { name: entry.clone(), aside: None, content: Content::Bytes(content) });
     }
     if parts.is_empty() {
         return Err(TableError::new(name, "the archive holds no table: no file in it ends in .csv, .tsv or .txt")
@@ -133,7 +134,7 @@ fn xlsx(bytes: &[u8]) -> Result<Vec<Part>, String> {
             }
         }
         left = rows.left;
-        parts.push(Part { name, hidden, content: Content::Cells(rows.text) });
+        parts.push(Part { name, aside: hidden.then_some(Why::Hidden), content: Content::Cells(rows.text) });
     }
     Ok(parts)
 }
@@ -152,7 +153,7 @@ fn xls(bytes: &[u8]) -> Result<Vec<Part>, String> {
             rows.put((top.saturating_add(position.0), first.saturating_add(position.1)), &shown(value))?;
         }
         left = rows.left;
-        parts.push(Part { name, hidden, content: Content::Cells(rows.text) });
+        parts.push(Part { name, aside: hidden.then_some(Why::Hidden), content: Content::Cells(rows.text) });
     }
     Ok(parts)
 }

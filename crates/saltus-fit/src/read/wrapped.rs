@@ -41,6 +41,20 @@ pub(super) fn commented(text: &str) -> Option<String> {
     text.lines().any(remark).then(|| text.lines().map(spelt).collect::<Vec<_>>().join("\n") + "\n")
 }
 
+/// A text without the remarks that an arrow points from at the end of lines, `1,80  <- released`;
+/// `None` if there are none.
+pub(super) fn pointed(text: &str) -> Option<String> {
+    let read = |line: &'_ str| -> Option<usize> {
+        let (at, mark) = ["<--", "<-", "←", "<="].iter().find_map(|mark| Some((line.find(mark)?, *mark)))?;
+        let digit = |c: char| c.is_ascii_digit();
+        let remark = &line[at + mark.len()..];
+        let names = remark.contains(char::is_alphabetic) && !remark.contains(digit);
+        (line[..at].contains(digit) && names).then_some(at)
+    };
+    let bare = |line: &str| read(line).map_or(line, |at| line[..at].trim_end()).to_owned();
+    text.lines().any(|line| read(line).is_some()).then(|| text.lines().map(bare).collect::<Vec<_>>().join("\n") + "\n")
+}
+
 /// A text without the pictures that telephones set beside words; `None` if there are none.
 pub(super) fn pictured(text: &str) -> Option<String> {
     let picture = |c: char| matches!(c, '\u{1f000}'..='\u{1faff}' | '\u{fe0f}');

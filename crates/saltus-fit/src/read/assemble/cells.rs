@@ -14,6 +14,16 @@ impl Builder<'_> {
         self.region.view.line(row, column)
     }
 
+    /// Whether a cell holds words, and no digit, where most others of its column are numbers: the
+    /// reading is missing, and the words say why.
+    pub(super) fn wordy(&self, row: usize, column: usize) -> bool {
+        let view = self.region.view;
+        let cells = || self.region.rows.iter().map(|&row| view.read(row, column));
+        let numbers = cells().filter(|cell| matches!(cell, Cell::Number(_))).count();
+        let words = cells().filter(|cell| *cell == Cell::Words).count();
+        !view.cell(row, column).contains(|c: char| c.is_ascii_digit()) && numbers > 2 * words
+    }
+
     /// The number in a cell in SI units, with its error; `None` if it is empty.
     pub(super) fn number(&self, row: usize, column: usize) -> Result<Found, TableError> {
         let (view, own) = (self.region.view, &self.columns.columns[column]);
@@ -30,6 +40,7 @@ impl Builder<'_> {
             Cell::Lost | Cell::Wrong(Fault::NotFinite) => {
                 return wrong(format!("'{text}' is not a finite number"), "take the row out");
             }
+            Cell::Words if self.wordy(row, column) => return Ok(None),
             Cell::Words => {
                 let help = if text.contains(' ') {
                     "write a plain number; the unit belongs in the header or behind the number, and a remark behind a '#'"

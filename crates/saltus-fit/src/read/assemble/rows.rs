@@ -270,14 +270,26 @@ impl Builder<'_> {
                 _ => Ok(()),
             };
         };
-        if matches!(self.region.view.read(row.at, rebound), Cell::Empty) {
-            let name = self.columns.columns[rebound].heading.text.clone();
-            let line = self.line(row.at, rebound);
-            self.aside.push(LeftAside::new(Part::Cell, shown(&name), Why::Empty).at(line));
+        if self.lacks(row.at, rebound) {
             return Ok(());
         }
         let drop = self.height(self.spanning(row.at, before), before)?.ok_or_else(|| self.empty(row.at, before))?;
         self.rebound(row, track, rebound, drop)
+    }
+
+    /// Whether a drop has no rebound, which is named as left aside; words in its place say why.
+    fn lacks(&mut self, row: usize, rebound: usize) -> bool {
+        let empty = match self.region.view.read(row, rebound) {
+            Cell::Empty => true,
+            Cell::Words => self.wordy(row, rebound),
+            _ => false,
+        };
+        if empty {
+            let name = self.columns.columns[rebound].heading.text.clone();
+            let line = self.line(row, rebound);
+            self.aside.push(LeftAside::new(Part::Cell, shown(&name), Why::Empty).at(line));
+        }
+        empty
     }
 
     /// The rebound of a row from a known height.
@@ -288,7 +300,7 @@ impl Builder<'_> {
         rebound: usize,
         (drop, sigma): (f64, Option<f64>),
     ) -> Result<(), TableError> {
-        if self.region.cell(row.at, rebound).is_empty() {
+        if self.lacks(row.at, rebound) {
             return Ok(());
         }
         let line = self.line(row.at, rebound);

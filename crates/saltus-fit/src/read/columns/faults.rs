@@ -15,6 +15,14 @@ use crate::read::region::Region;
 use crate::read::units::Dimension;
 use crate::read::vocabulary::{Atom, folded, nearest};
 
+/// A column that names a ball or a surface, and what its heading says beside that.
+struct Named {
+    index: usize,
+    rest: String,
+    value: Value,
+    kind: Kind,
+}
+
 impl Columns {
     /// Columns without a name: of row names, of a plain count, or of something that is left aside.
     pub(super) fn unnamed(&mut self, region: &Region<'_>) -> Result<(), TableError> {
@@ -137,30 +145,60 @@ impl Columns {
         }
     }
 
-    /// Columns called as two others are but for one word, which names a ball or a surface in those:
-    /// it names one here as well, `Rebound zorb (cm)` beside `Rebound golf (cm)`.
-    pub(super) fn siblings(&mut self) {
-        let without =
-            |text: &str, words: &str| text.split_whitespace().filter(|word| *word != words).collect::<String>();
-        let named: Vec<(String, Value)> = self
-            .values()
-            .filter(|(_, c, v)| c.heading.unknown.is_empty() && !v.group.is_empty() && v.role == Role::Reading)
-            .map(|(_, c, v)| (without(&c.heading.text, &v.group), v.clone()))
+    /// Columns called as two others are but for words that name a ball or a surface in those: they
+    /// name one here as well, `Rebound zorb (cm)` beside `Rebound golf (cm)`; and so does a name by
+    /// itself beside those, where the cells are numbers as theirs are.
+    pub(super) fn siblings(&mut self, region: &Region<'_>) {
+        let without = |text: &str, name: &str| text.replacen(name, "", 1).split_whitespace().collect::<String>();
+        let of = |c: &Column| c.value().or_else(|| c.heading.value().filter(|_| c.kind == Kind::Share)).cloned();
+        let named: Vec<Named> = (0..)
+            .zip(&self.columns)
+            .filter(|(_, c)| c.heading.unknown.is_empty())
+            .filter_map(|(index, c)| Some((index, c, of(c)?)))
+            .filter(|(_, _, v)| !v.group.is_empty() && v.role == Role::Reading)
+            .map(|(index, c, value)| Named {
+                index,
+                rest: without(&c.heading.text, &value.group),
+                value,
+                kind: c.kind.clone(),
+            })
             .collect();
-        // One alone may be named by chance.
-        if !named.iter().any(|(text, of)| named.iter().any(|(other, v)| other == text && v.group != of.group)) {
+        // One alone may be named by chance, where its heading says something else too.
+        let several = |one: &Named| {
+            let other = |other: &Named| other.rest == one.rest && other.value.group != one.value.group;
+            one.rest.is_empty() || named.iter().any(other)
+        };
+        if !named.iter().any(several) {
             return;
         }
-        for column in &mut self.columns {
-            let [word] = column.heading.unknown.as_slice() else { continue };
-            let (word, rest) = (word.clone(), without(&column.heading.text, word));
-            let own = column.heading.value();
-            let alike = |(text, of): &&(String, Value)| {
-                *text == rest && own.is_some_and(|v| (v.what, v.at, v.role) == (of.what, of.at, of.role))
+        let cell = |row: usize, n: usize| match region.view.read(row, n) {
+            Cell::Number(m) => Some(m.unit),
+            _ => None,
+        };
+        for index in 0..self.columns.len() {
+            let heading = &self.columns[index].heading;
+            // All of a heading that says nothing else is a name.
+            let whole = heading.value().is_none() && heading.unit.is_none();
+            let name = if whole { heading.text.clone() } else { heading.unknown.join(" ") };
+            if heading.unknown.is_empty() || !heading.text.contains(&name) {
+                continue;
+            }
+            let rest = without(&heading.text, &name);
+            let same = |one: &&Named| {
+                let of_one = |v: &Value| (v.what, v.at, v.role) == (one.value.what, one.value.at, one.value.role);
+                let units = || region.rows.iter().filter_map(|&row| cell(row, one.index).map(|unit| (row, unit)));
+                let beside = || named.iter().any(|n| n.index.abs_diff(index) == 1);
+                let bare = || {
+                    let alike = units().all(|(row, unit)| cell(row, index) == Some(unit));
+                    whole && units().count() > 1 && alike && beside()
+                };
+                one.rest == rest && heading.value().map_or_else(bare, of_one)
             };
-            let found = named.iter().find(alike).filter(|_| rest.len() < column.heading.text.len());
-            if let Some((_, of)) = found {
-                column.kind = Kind::Value(Value { group: word, ..of.clone() });
+            if let Some(Named { value, kind, .. }) = named.iter().find(same) {
+                let value = Value { group: name, ..value.clone() };
+                let column = &mut self.columns[index];
+                column.kind = if *kind == Kind::Share { Kind::Share } else { Kind::Value(value.clone()) };
+                column.heading.meaning = Meaning::Value(value);
                 column.heading.unknown.clear();
             }
         }

@@ -115,6 +115,7 @@ impl Columns {
             });
         }
         found.specimens(region);
+        found.capitals(region);
         found.enumerated();
         found.spans(region);
         found.counted(region);
@@ -133,7 +134,7 @@ impl Columns {
         found.shares(region);
         found.energies(region);
         found.one_sided();
-        found.siblings();
+        found.siblings(region);
         found.lacking(region, released);
         found.not_understood(region)?;
         found.drops(region);

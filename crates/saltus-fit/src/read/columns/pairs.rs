@@ -5,13 +5,14 @@ use super::{Column, Columns, Kind, constant, plain};
 use crate::error::TableError;
 use crate::finding::Note;
 use crate::read::aside::Why;
-use crate::read::cell::{Cell, respelt};
+use crate::read::cell::{Cell, clock, respelt};
 use crate::read::grid::shown;
 use crate::read::heading::{At, Role, Value, What};
 use crate::read::named::{OFF, between, bounce};
+use crate::read::phrases::Phrase;
 use crate::read::region::Region;
 use crate::read::units::{Dimension, Scale, Unit};
-use crate::read::vocabulary::Atom;
+use crate::read::vocabulary::{Atom, folded};
 
 impl Columns {
     /// `Sample` above `A` and `B` names what was dropped; above numbers it counts.
@@ -23,6 +24,32 @@ impl Columns {
             let named = cells.clone().next().is_some() && cells.all(words);
             if column.kind == Kind::Trial && column.heading.has(Atom::Sample) && named {
                 self.columns[index].kind = Kind::Setting;
+            }
+        }
+    }
+
+    /// `T1`, `T2` beside heights are trials, and no times, where no unit of time is stated.
+    pub(super) fn capitals(&mut self, region: &Region<'_>) {
+        let dimension = |c: &Column, of: Dimension| c.unit.is_some_and(|unit| unit.dimension == of);
+        let timed = region.units.0.is_some() || self.columns.iter().any(|c| dimension(c, Dimension::Time));
+        let lengths = region.units.1.is_some() || self.columns.iter().any(|c| dimension(c, Dimension::Length));
+        if timed || !lengths {
+            return;
+        }
+        let bare = |index: usize| {
+            region.rows.iter().all(|&row| match region.view.read(row, index) {
+                Cell::Number(m) => m.unit.is_none(),
+                _ => clock(region.cell(row, index)).is_none(),
+            })
+        };
+        for (_, column) in self.columns.iter_mut().enumerate().filter(|(index, _)| bare(*index)) {
+            let name = column.heading.text.rsplit([' ', ':']).next().unwrap_or_default();
+            let number = name.strip_prefix('T').filter(|n| n.parse::<u32>().is_ok());
+            if let (Some(number), Kind::Value(value)) = (number, &mut column.kind)
+                && value.what == What::Time
+            {
+                (value.what, value.at) = (What::Unsaid, At::Row);
+                value.trial = format!("trial {number}");
             }
         }
     }
@@ -163,7 +190,8 @@ impl Columns {
         }
     }
 
-    /// `u` beside `v`, or `v` beside `v'`: the speeds before and after, as schools write them.
+    /// `u` beside `v`, `v` beside `v'`, or `v down` beside `v up`: the speeds before and after, as
+    /// schools write them.
     pub(super) fn letters(&mut self) {
         let speed = |c: &Column, name: &str| {
             let unit = c.heading.unit.is_some_and(|unit| unit.dimension == Dimension::Speed);
@@ -173,14 +201,18 @@ impl Columns {
             let mut found = (0..self.columns.len()).filter(|&n| speed(&self.columns[n], name));
             found.next().filter(|_| found.next().is_none())
         };
-        let primed = (0..self.columns.len()).find(|&n| {
-            let column = &self.columns[n];
-            column.value().is_some_and(|v| (v.what, v.at) == (What::Speed, At::After))
-                && column.heading.text.starts_with('v')
+        let after = |&n: &usize| self.columns[n].value().is_some_and(|v| (v.what, v.at) == (What::Speed, At::After));
+        let primed = (0..self.columns.len()).filter(after).find(|&n| self.columns[n].heading.text.starts_with('v'));
+        let rising = (0..self.columns.len()).find(after);
+        let falling = (0..self.columns.len()).find(|&n| {
+            let [word] = self.columns[n].heading.unknown.as_slice() else { return false };
+            self.columns[n].holds(What::Speed) && Phrase::Down.is(&folded(word))
         });
-        let Some((before, after)) = one("u").zip(one("v")).or(one("v").zip(primed)) else { return };
+        let lettered = one("u").zip(one("v")).or(one("v").zip(primed));
+        let Some((before, after)) = lettered.or(falling.zip(rising)) else { return };
         let name = shown(&self.columns[before].heading.text);
         self.aside.retain(|aside| aside.name != name);
+        self.columns[before].heading.unknown.clear();
         self.columns[before].kind = Kind::Value(plain(What::Speed));
         self.place(before, At::Before, String::new());
         self.place(after, At::After, String::new());

@@ -4,7 +4,7 @@
 use super::super::phrases::Phrase;
 use super::super::units::{Dimension, Scale, Unit};
 use super::super::vocabulary::{Atom, folded, meanings};
-use super::super::words::{Kind, Word};
+use super::super::words::{Kind, Word, split};
 
 /// A height of release that a heading or a title states.
 #[derive(Clone, Debug, PartialEq)]
@@ -226,4 +226,28 @@ pub(super) fn computed(text: &str) -> Option<&str> {
     let stated = formula.trim_start().starts_with(|c: char| c.is_ascii_digit());
     let combines = formula.contains(['/', '*', '^', '√', '·', '×', '÷']) && formula.contains(char::is_alphabetic);
     (combines && !stated).then(|| sign.trim())
+}
+
+/// Whether a text lists units of one kind, `ft, in`: each cell names its own.
+pub(super) fn of_units(text: &str) -> bool {
+    let units = text.split([',', '/', '&', ' ']).filter(|word| !word.is_empty() && !Phrase::And.is(word));
+    let mut found = units.map(|word| Unit::parse(word).map(|unit| unit.dimension));
+    let first = found.next().flatten();
+    let mut rest = found.peekable();
+    first.is_some() && rest.peek().is_some() && rest.all(|dimension| dimension == first)
+}
+
+/// Whether a text asks for units behind the numbers, `with unit!`.
+pub(super) fn asks_for_unit(text: &str) -> bool {
+    let words = split(text);
+    words.iter().any(|word| word.is(Atom::Measure)) && words.iter().all(|w| w.is(Atom::Measure) || w.is(Atom::Filler))
+}
+
+/// Whether a text is the format of a clock: `min:sec`, `hh:mm:ss.ms`.
+pub(super) fn of_a_clock(text: &str) -> bool {
+    let part = |part: &str| {
+        let zeros = !part.is_empty() && part.chars().all(|c| c == '0');
+        zeros || matches!(&*folded(part), "h" | "hh" | "m" | "mm" | "min" | "s" | "ss" | "sec" | "ms" | "sss" | "f")
+    };
+    text.contains(':') && text.split([':', '.', ',']).all(part)
 }

@@ -39,6 +39,7 @@ impl Heading {
         }
         let setting = has(Group)
             && !named
+            && !has(Atom::Error)
             && !has(Height)
             && !has(Position)
             && self.unit.is_none_or(|u| u.dimension == Dimension::Other);

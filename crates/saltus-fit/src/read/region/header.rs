@@ -284,7 +284,8 @@ pub(super) fn both(upper: &[String], lower: &[String]) -> Option<Vec<String>> {
 /// one that names balls or surfaces at large says nothing; `None` where the names make no blocks.
 fn blocks(upper: &[String], lower: &[String]) -> Option<Vec<String>> {
     let found = repeated(lower)?;
-    let mut above = vec![String::new(); lower.len().max(upper.len())];
+    let mut above = upper.to_vec();
+    above.resize(lower.len().max(upper.len()), String::new());
     for block in found {
         let cells = upper.get(block.start..block.end.min(upper.len())).unwrap_or_default();
         let plain = |cell: &&String| matches!(Heading::parse(cell).meaning, Meaning::Setting);

@@ -29,7 +29,12 @@ impl Display for Note {
             }
             Self::Recognised { program } => write!(f, "recognised as {}", described(*program)),
             Self::Encoded { encoding } => write!(f, "the text is encoded as {encoding}"),
-            Self::Rate { rate, line } => write!(f, "{rate} frames, or samples, a second, as line {line} states"),
+            Self::Rate { rate, line: Some(line) } => {
+                write!(f, "{rate} frames, or samples, a second, as line {line} states")
+            }
+            Self::Rate { rate, line: None } => {
+                write!(f, "{rate} frames, or samples, a second, as the name of the file states")
+            }
             Self::Heard { sounds, contacts, from, to } => {
                 let sounds = plural(*sounds, "sound");
                 write!(f, "{sounds} in {:.2} s (from {from:.2} s), {contacts} of them contacts", to - from)
