@@ -2,8 +2,9 @@
 //! it only after checking.
 //!
 //! The problem is ½ ‖X x − y‖² → min, low ≤ x ≤ high, with whitened rows (each divided by its
-//! standard error). It is handed to Clarabel in residual form: unknowns (x, r), P = diag(0, I), X
-//! x + r = y as equalities, the bounds as inequalities.
+//! standard error). A direct factorisation solves it, and finds bound by bound which hold. What is
+//! reported is handed to Clarabel too, in residual form: unknowns (x, r), P = diag(0, I), X x + r =
+//! y as equalities, the bounds as inequalities.
 //!
 //! What the solver does not say by itself is settled here: numbers are checked to be finite before
 //! and after; columns and right-hand side are scaled to norm one, since the solver's absolute gap
