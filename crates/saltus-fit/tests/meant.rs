@@ -89,6 +89,18 @@ proptest! {
         prop_assert!(near(report.cor().unwrap().value, e), "{}", report);
     }
 
+    /// Velocities in time are no speeds of bounces, one after the other.
+    #[test]
+    fn velocities_in_time_are_a_question(e in 0.5f64..0.9, run in prop::sample::select(vec!["", " Run #3"])) {
+        let (mut v, mut text) = (0.0, format!("Time (s){run},Velocity (m/s){run}\n"));
+        for n in 0..60 {
+            v = if n % 12 == 11 { -e * v } else { v - 0.196 };
+            text += &format!("{:.2},{v:.3}\n", 0.02 * f64::from(n));
+        }
+        let error = typed::read(&text).expect_err("a question").to_string();
+        prop_assert!(error.contains("velocity of a ball in flight") && error.contains("export the position"), "{}", error);
+    }
+
     /// The name of a file may state the rate of its frames.
     #[test]
     fn the_name_of_a_file_states_a_rate(e in 0.6f64..0.85, name in prop::sample::select(vec!["impacts 240fps.csv", "drop_240_fps.csv", "a/b/Video-240fps.csv"])) {
@@ -105,6 +117,26 @@ proptest! {
         let rows = (0..6).map(|n| format!("{n}{by}{}{by}{:.2}\n", 12 + 7 * n, 150.0 * e.powi(2 * n)));
         let report = fit(&format!("# made by a program\n# bounce{by}{other}{by}height_cm\n{}", rows.collect::<String>()));
         prop_assert!(near(report.cor().unwrap().value, e), "{}", report);
+    }
+
+    /// Beside the speeds before and after a bounce the height of release is left aside.
+    #[test]
+    fn speeds_say_more_than_heights_of_release(e in 0.4f64..0.95, slow in 0.9f64..0.97) {
+        let row = |h: f64| { let v = slow * (2.0 * 9.81 * h).sqrt(); format!("{:.0},{v:.3},{:.3}\n", 100.0 * h, e * v) };
+        let report = fit(&format!("Bouncing ball\ndrop (cm),v_in (m/s),v_out (m/s)\n{}", [0.5, 0.75, 1.0, 1.25].map(row).concat()));
+        prop_assert!(near(report.cor().unwrap().value, e), "{}", report);
+        prop_assert!(report.left_aside().iter().any(|aside| aside.name == "drop (cm)"), "{}", report);
+    }
+
+    /// The unit of an upper name is that of the names below it, and the name of a file states one.
+    #[test]
+    fn units_stand_above_and_in_the_name(e in 0.5f64..0.85, upper: bool) {
+        let rows: String = [1.5, 1.2, 1.0].map(|h| format!("1,{h},{:.3}\n", h * e * e)).concat();
+        let names = if upper { "Trial,Height (m),\n,release,rebound" } else { "Trial,release,rebound" };
+        let name = if upper { "t.csv" } else { "our balls_heights_m.csv" };
+        let table = Table::parse(name, format!("{names}\n{rows}").as_bytes(), &ReadOptions::default()).unwrap();
+        let cor = saltus_fit::Fit::new().run(&table).unwrap().cor().unwrap().value;
+        prop_assert!(near(cor, e), "{}", cor);
     }
 
     /// Speeds on the way down and on the way up are those before and after the bounce.

@@ -54,8 +54,9 @@ pub(super) fn drop(text: &str) -> Option<DropHeight> {
         if let Some((height, before, after)) = released(clause) {
             // What brackets hold behind it is a remark.
             let remark = after.trim_start().strip_prefix('(').and_then(|after| after.split_once(')'));
-            let after =
-                remark.filter(|(inside, _)| !split(inside).iter().any(turns_away)).map_or(after, |(_, rest)| rest);
+            let after = remark
+                .filter(|(inside, _)| !split(&inside.replace('/', " ")).iter().any(turns_away))
+                .map_or(after, |(_, rest)| rest);
             // The sign that stands for it: `Fallhöhe h0 = 1 m`.
             let named = before.trim_end_matches([' ', '=', ':', '(']);
             let sign = ["h0", "h_0", "h₀"].iter().find_map(|sign| named.strip_suffix(sign));

@@ -127,7 +127,9 @@ fn joined_up<'a>(
             sigma_time: metadata.sigma_time.or(title.sigma.1),
             ..metadata
         };
-        region.units = (region.units.0.or(title.units.0), region.units.1.or(title.units.1));
+        let named = title::named(&grid.called());
+        let said = (title.units.0.or(named.0), title.units.1.or(named.1));
+        region.units = (region.units.0.or(said.0), region.units.1.or(said.1));
         region.drop = title.drop.as_ref().map(|(drop, _)| drop.clone());
         // Whoever states the zero or the height of release answers it.
         let answered = options.zero.or(options.drop).is_some();
@@ -306,6 +308,8 @@ fn sheets(name: &str, parts: Vec<Part>, options: &ReadOptions) -> Result<Table, 
             None if part.aside.is_some() => part.aside,
             None if title::names_no_readings(&label) => Some(Why::Predicted),
             None if all && stem(&label) != "All" => Some(Why::Elsewhere),
+            // What phyphox tells of the telephone, and of its clock.
+            None if matches!(stem(&label), "Metadata Device" | "Metadata Time") => Some(Why::NoTable),
             None => None,
         };
         if let Some(why) = why {

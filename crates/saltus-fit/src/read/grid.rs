@@ -379,7 +379,9 @@ fn delimiter<'a>(lines: impl Iterator<Item = &'a str>) -> u8 {
         // Below a name without a comma, a comma that makes a number is no delimiter.
         Some(b',') if decimal_commas(&lines) => b';',
         Some(mark) => mark,
-        None if lines.iter().skip(1).any(|line| line.contains(' ') && line.split(' ').all(number)) => b' ',
+        None if lines.iter().skip(1).any(|line| line.trim().contains(' ') && line.trim().split(' ').all(number)) => {
+            b' '
+        }
         None => b',',
     }
 }

@@ -436,15 +436,13 @@ impl Heading {
     /// A unit at the end, behind a slash or a comma, or one that a blank does not part: `height /
     /// cm`, `v, m/s`.
     fn take_unit(&mut self, text: &str) -> String {
-        if self.unit.is_some() {
-            return text.to_owned();
-        }
         // What stands last by itself comes first: `v in m/s` is not in seconds.
         for mark in [" ", " / ", "/", ", "] {
             if let Some((name, unit)) = text.trim().rsplit_once(mark)
                 && !name.trim().is_empty()
                 && (mark != " " || unit.contains(['/', '%']) && !unit.starts_with('/'))
                 && let Some(unit) = Unit::parse(unit)
+                && self.unit.is_none_or(|known| known == unit)
             {
                 self.unit = Some(unit);
                 return name.trim_end().strip_suffix(" in").unwrap_or(name).to_owned();

@@ -149,6 +149,9 @@ pub(super) fn layout(
     if region.frames && any(|t| t.height.is_some()) {
         return Ok(Layout::Samples { frames: true });
     }
+    if let Some(error) = velocities(region, columns, rows, tracks) {
+        return Err(error);
+    }
     let key = columns.number().is_some() || columns.one(&Kind::Label).is_some();
     let sure = columns.number().is_none_or(|(_, sure)| sure);
     let numbered = key && !rows.rows.is_empty() && rows.rows.iter().all(|row| row.bounce.is_some());
@@ -209,6 +212,20 @@ pub(super) fn layout(
         Some(error) => Err(error),
         None => Ok(Layout::Listed),
     }
+}
+
+/// A velocity that changes its sign from row to row, beside a time, is that of a ball in flight,
+/// and of no bounce.
+fn velocities(region: &Region<'_>, columns: &Columns, rows: &Rows, tracks: &[Track]) -> Option<TableError> {
+    let moving = |track: &&Track| track.time.is_some() && track.height.is_none();
+    let index = tracks.iter().find(moving)?.speed?;
+    let number = |row: &Row| region.view.number(row.at, index);
+    let signs = || rows.rows.iter().filter_map(number);
+    let both = signs().any(|v| v < 0.0) && signs().any(|v| v > 0.0);
+    let name = shown(&columns.columns[index].heading.text);
+    let message = format!("'{name}' is the velocity of a ball in flight: its heights are wanted");
+    let help = "export the position beside the time, such as 'y (m)'; or give the speeds before and after each bounce";
+    both.then(|| region.header_error(index, message).question().help(help))
 }
 
 /// Bounces that count from the release on have no height before that: where the first comes as

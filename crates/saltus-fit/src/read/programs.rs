@@ -136,12 +136,11 @@ fn given<'a>(view: View<'a>, names: &[String]) -> Region<'a> {
 /// A track of labels as Audacity writes it, `start, end, text` a line without a header: the labels
 /// stand at the contacts, or those that say so where another lasts longer than one.
 fn labels(view: View<'_>) -> Option<Region<'_>> {
-    // Labels may count the contacts.
-    let counts = (0..view.rows()).all(|row| view.cell(row, 2).parse() == Ok(row + 1));
     let label = |row: usize| {
         let text = view.cell(row, 2);
         view.width(row) == 3
-            && (text.is_empty() || counts || text.starts_with(char::is_alphabetic))
+            // Labels may count the contacts.
+            && (text.is_empty() || text.parse() == Ok(row + 1) || text.starts_with(char::is_alphabetic))
             && view
                 .number(row, 0)
                 .zip(view.number(row, 1))

@@ -92,6 +92,14 @@ pub(super) fn stated(region: &Region<'_>) -> Stated {
     found
 }
 
+/// The units of times and of heights that the name of a file ends in, `3 balls heights cm`.
+pub(super) fn named(name: &str) -> (Option<Unit>, Option<Unit>) {
+    let ends = name.match_indices(' ').map(|(at, _)| &name[at + 1..]);
+    let mut found = Stated::default();
+    std::iter::once(name).chain(ends).find_map(of_clauses).into_iter().for_each(|unit| found.of_all(unit));
+    found.units
+}
+
 impl Stated {
     /// With what a title above that of another table states, where its own does not.
     pub(super) fn below(self, first: &Self) -> Self {

@@ -7,6 +7,7 @@ use crate::read::cell::{Cell, Fault, clock};
 use crate::read::columns::Kind;
 use crate::read::grid::shown;
 use crate::read::heading::{At, What};
+use crate::read::rows::Rows;
 use crate::read::units::{Dimension, Scale, Unit};
 
 impl Builder<'_> {
@@ -18,10 +19,26 @@ impl Builder<'_> {
     /// reading is missing, and the words say why.
     pub(super) fn wordy(&self, row: usize, column: usize) -> bool {
         let view = self.region.view;
-        let cells = || self.region.rows.iter().map(|&row| view.read(row, column));
-        let numbers = cells().filter(|cell| matches!(cell, Cell::Number(_))).count();
-        let words = cells().filter(|cell| *cell == Cell::Words).count();
-        !view.cell(row, column).contains(|c: char| c.is_ascii_digit()) && numbers > 2 * words
+        let mostly = || {
+            let cells = || self.region.rows.iter().map(|&row| view.read(row, column));
+            let numbers = cells().filter(|cell| matches!(cell, Cell::Number(_))).count();
+            numbers > 2 * cells().filter(|cell| *cell == Cell::Words).count()
+        };
+        !view.cell(row, column).contains(|c: char| c.is_ascii_digit()) && *self.mostly[column].get_or_init(mostly)
+    }
+
+    /// Names the cells that hold words in place of a reading as left aside.
+    pub(super) fn wanting(&mut self, rows: &Rows) {
+        let found = (0..self.mostly.len()).filter(|column| self.mostly[*column].get() == Some(&true));
+        for column in found.collect::<Vec<usize>>() {
+            let name = shown(&self.columns.columns[column].heading.text);
+            for row in &rows.rows {
+                if self.region.view.read(row.at, column) == Cell::Words && self.wordy(row.at, column) {
+                    let line = self.line(row.at, column);
+                    self.aside.push(LeftAside::new(Part::Cell, name.clone(), Why::Empty).at(line));
+                }
+            }
+        }
     }
 
     /// The number in a cell in SI units, with its error; `None` if it is empty.

@@ -4,6 +4,7 @@ mod cells;
 mod rows;
 mod stated;
 
+use std::cell::OnceCell;
 use std::collections::{HashMap, HashSet};
 
 use super::aside::{LeftAside, Part, Why};
@@ -43,6 +44,8 @@ struct Builder<'a> {
     /// The lines of rows of a series without a position.
     missing: Vec<u64>,
     aside: Vec<LeftAside>,
+    /// Whether most cells of a column are numbers, once one is met that holds words.
+    mostly: Vec<OnceCell<bool>>,
     /// Trials whose times are those of the flights.
     flights: Vec<usize>,
     /// The times of rows are those of the tops beside them.
@@ -62,7 +65,7 @@ pub(super) fn table(
     options: &ReadOptions,
     metadata: Metadata,
 ) -> Result<Table, TableError> {
-    let skipped = filtered(region, &mut rows, options)?;
+    let skipped = rows::filtered(region, &mut rows, options)?;
     if rows.rows.is_empty() {
         if skipped > 0 {
             let wanted: Vec<String> = options.filters.iter().map(|(n, v)| format!("{n} = {v}")).collect();
@@ -87,6 +90,7 @@ pub(super) fn table(
         table.repairs.push(Repair::RoundedNumbers.into());
     }
     let mut tracks = tracks(columns);
+    let width = columns.columns.len();
     let mut builder = Builder {
         region,
         layout: Layout::Listed,
@@ -100,6 +104,7 @@ pub(super) fn table(
         merged: HashMap::new(),
         missing: Vec::new(),
         aside: rows.aside.clone(),
+        mostly: vec![OnceCell::new(); width],
         flights: Vec::new(),
         after: false,
     };
@@ -119,6 +124,7 @@ pub(super) fn table(
             builder.row(n, row, track, flights)?;
         }
     }
+    builder.wanting(&rows);
     let (region, columns) = (builder.region, builder.columns.clone());
     let mut table = builder.finish(options, &tracks, flights, table)?;
     stated::cors(region, &columns, &rows, &mut table.trials);
@@ -126,28 +132,6 @@ pub(super) fn table(
         stated::beside(region, &columns, &rows, &mut table);
     }
     Ok(table)
-}
-
-/// Keeps the rows that every filter asks for, and counts the others.
-fn filtered(region: &Region<'_>, rows: &mut Rows, options: &ReadOptions) -> Result<usize, TableError> {
-    let find = |(name, value): &(String, String)| {
-        let index = region.header.iter().position(|cell| cell.eq_ignore_ascii_case(name.trim()));
-        index.map(|index| (index, value.trim().to_owned())).ok_or_else(|| {
-            region
-                .error(format!("there is no column '{name}' to filter by"))
-                .help(format!("the table has {}", region.header.join(", ")))
-        })
-    };
-    let filters: Vec<(usize, String)> = options.filters.iter().map(find).collect::<Result<_, _>>()?;
-    let before = rows.rows.len();
-    rows.rows.retain(|row| filters.iter().all(|(index, value)| same(region.cell(row.at, *index), value)));
-    Ok(before - rows.rows.len())
-}
-
-/// Equal as text, or as numbers.
-fn same(cell: &str, value: &str) -> bool {
-    cell.eq_ignore_ascii_case(value)
-        || matches!((cell.parse::<f64>(), value.parse::<f64>()), (Ok(a), Ok(b)) if (a - b).abs() < f64::EPSILON)
 }
 
 /// Whether drops of their own count how many bounces lie before the height beside them: what only

@@ -11,10 +11,10 @@ use crate::read::heading::{At, What};
 use crate::read::layout::{Layout, Track};
 use crate::read::named::event;
 use crate::read::region::Region;
-use crate::read::rows::Row;
+use crate::read::rows::{Row, Rows};
 use crate::read::units::Scale;
 use crate::read::vocabulary::Atom;
-use crate::read::{Event, Reading, Span, Timed, Trial};
+use crate::read::{Event, ReadOptions, Reading, Span, Timed, Trial};
 
 impl Builder<'_> {
     pub(super) fn row(&mut self, n: usize, row: &Row, track: &Track, flights: bool) -> Result<(), TableError> {
@@ -257,16 +257,14 @@ impl Builder<'_> {
         }
         let Some((before, rebound)) = before.zip(rebound) else {
             return match rebound.or(before) {
-                Some(column) if rebound.is_some() => Err(self
-                    .region
-                    .header_error(
-                        column,
-                        format!(
-                            "beside '{}' the height of release is wanted",
-                            shown(&self.columns.columns[column].heading.text)
-                        ),
-                    )
-                    .help("give it in a column such as 'drop height (cm)'")),
+                Some(column) if rebound.is_some() => {
+                    let name = shown(&self.columns.columns[column].heading.text);
+                    let message = format!("beside '{name}' the height of release is wanted");
+                    let error = self.region.header_error(column, message);
+                    // One alone may be of anything, as the first two sounds of a stopwatch.
+                    let error = if self.region.rows.len() == 1 { error.nothing() } else { error };
+                    Err(error.help("give it in a column such as 'drop height (cm)'"))
+                }
                 _ => Ok(()),
             };
         };
@@ -280,9 +278,8 @@ impl Builder<'_> {
     /// Whether a drop has no rebound, which is named as left aside; words in its place say why.
     fn lacks(&mut self, row: usize, rebound: usize) -> bool {
         let empty = match self.region.view.read(row, rebound) {
-            Cell::Empty => true,
-            Cell::Words => self.wordy(row, rebound),
-            _ => false,
+            Cell::Words => return self.wordy(row, rebound),
+            cell => cell == Cell::Empty,
         };
         if empty {
             let name = self.columns.columns[rebound].heading.text.clone();
@@ -451,4 +448,26 @@ fn event_of(region: &Region<'_>, row: usize, index: usize) -> Result<Event, Tabl
             .error(row, index, format!("the event '{}' is not known", shown(cell)))
             .help("write release (or drop), contact (or impact, bounce), or apex (or peak)")
     })
+}
+
+/// Keeps the rows that every filter asks for, and counts the others.
+pub(super) fn filtered(region: &Region<'_>, rows: &mut Rows, options: &ReadOptions) -> Result<usize, TableError> {
+    let find = |(name, value): &(String, String)| {
+        let index = region.header.iter().position(|cell| cell.eq_ignore_ascii_case(name.trim()));
+        index.map(|index| (index, value.trim().to_owned())).ok_or_else(|| {
+            region
+                .error(format!("there is no column '{name}' to filter by"))
+                .help(format!("the table has {}", region.header.join(", ")))
+        })
+    };
+    let filters: Vec<(usize, String)> = options.filters.iter().map(find).collect::<Result<_, _>>()?;
+    let before = rows.rows.len();
+    rows.rows.retain(|row| filters.iter().all(|(index, value)| same(region.cell(row.at, *index), value)));
+    Ok(before - rows.rows.len())
+}
+
+/// Equal as text, or as numbers.
+fn same(cell: &str, value: &str) -> bool {
+    cell.eq_ignore_ascii_case(value)
+        || matches!((cell.parse::<f64>(), value.parse::<f64>()), (Ok(a), Ok(b)) if (a - b).abs() < f64::EPSILON)
 }

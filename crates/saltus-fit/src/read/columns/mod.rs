@@ -137,6 +137,7 @@ impl Columns {
         found.siblings(region);
         found.lacking(region, released);
         found.not_understood(region)?;
+        found.sided();
         found.drops(region);
         found.statistics(region, released)?;
         found.paired(region)?;

@@ -28,6 +28,24 @@ impl Columns {
         }
     }
 
+    /// Beside the speeds before and after each bounce the heights of release say nothing more.
+    pub(super) fn sided(&mut self) {
+        let read = |what: What, at: &[At]| {
+            let of = |v: &Value| v.role == Role::Reading && v.what == what && at.contains(&v.at);
+            self.values()
+                .filter(|(_, c, v)| of(v) && c.heading.unknown.is_empty())
+                .map(|(n, _, _)| n)
+                .collect::<Vec<_>>()
+        };
+        let speeds = [At::Before, At::After].map(|at| read(What::Speed, &[at]));
+        if speeds.iter().any(Vec::is_empty) || !read(What::Height, &[At::Row]).is_empty() {
+            return;
+        }
+        for index in read(What::Height, &[At::Release]) {
+            self.leave(index, Why::Elsewhere);
+        }
+    }
+
     /// `T1`, `T2` beside heights are trials, and no times, where no unit of time is stated.
     pub(super) fn capitals(&mut self, region: &Region<'_>) {
         let dimension = |c: &Column, of: Dimension| c.unit.is_some_and(|unit| unit.dimension == of);

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::super::cell::Cell;
 use super::super::grid::View;
-use super::super::heading::{Heading, Meaning, Role, What};
+use super::super::heading::{At, Heading, Meaning, Role, What};
 use super::super::phrases::Phrase;
 use super::super::sequence::{LEVEL, of_samples};
 use super::super::units::{Dimension, Unit};
@@ -322,9 +322,15 @@ pub(in crate::read) fn repeated(header: &[String]) -> Option<Vec<Range<usize>>> 
     (groups.len() > 1 && same).then_some(groups)
 }
 
-/// What an upper name adds to a lower: `Rebound (cm)` above `Trial 1`, whose unit is for both.
+/// What an upper name adds to a lower: `Rebound (cm)` above `Trial 1`, whose unit is for both, as
+/// that of `Height (cm)` is above `release`.
 fn spanned(name: &str, lower: &str) -> String {
-    let own = Heading::parse(lower);
+    let (own, above) = (Heading::parse(lower), Heading::parse(name));
+    let same = |what: What| above.value().is_some_and(|v| v.what == what && v.at == At::Row);
+    if own.unit.is_none() && above.unit.is_some() && own.value().is_some_and(|v| same(v.what)) {
+        let bare = name.rfind(['(', '[']).map(|at| &name[at..]).filter(|unit| unit.ends_with([')', ']']));
+        return bare.map_or(lower.to_owned(), |unit| format!("{lower} {unit}"));
+    }
     let said = own.value().is_some_and(|v| v.what != What::Unsaid);
     if said || matches!(own.meaning, Meaning::Aside(_)) && own.unknown.is_empty() {
         lower.to_owned()
