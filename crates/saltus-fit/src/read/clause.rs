@@ -106,7 +106,13 @@ fn dashed(text: &str) -> Vec<&str> {
         Unit::parse(inside).is_some() || split(inside).iter().any(turns_away)
     };
     let bare = |part: &'_ str| part.find('(').filter(|at| !belongs(&part[at + 1..])).unwrap_or(part.len());
-    parts.map(|part| part[..bare(part)].trim()).filter(|part| *part != text).collect()
+    let mut found: Vec<&str> = Vec::new();
+    for part in parts.map(|part| part[..bare(part)].trim()) {
+        if part != text && !found.contains(&part) {
+            found.push(part);
+        }
+    }
+    found
 }
 
 /// What stands in brackets, a clause of its own.

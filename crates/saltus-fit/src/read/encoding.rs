@@ -18,10 +18,9 @@ const UPPER: [(&str, &str); 2] = [
     ),
 ];
 
-/// How many words with other letters than those of English are understood, of the beginning.
+/// How many words with other letters than those of English are understood.
 fn understood(text: &str) -> usize {
-    let beginning: String = text.chars().take(MANY).collect();
-    let words = beginning.split(|c: char| !c.is_alphabetic()).filter(|word| !word.is_ascii());
+    let words = text.split(|c: char| !c.is_alphabetic()).filter(|word| !word.is_ascii());
     words.filter(|word| meanings(&folded(word)).is_some()).count()
 }
 
@@ -42,20 +41,20 @@ pub(super) fn decoded(bytes: &[u8]) -> (Cow<'_, str>, Option<&'static str>) {
     match std::str::from_utf8(bytes) {
         Ok(text) => (Cow::Borrowed(text), None),
         // What is no UTF-8 was written by a program that knew one byte a character: Latin-1, near
-        // enough, unless more words are understood by another.
+        // enough, unless more words of the beginning are understood by another.
         Err(_) => {
-            let latin: String = bytes.iter().map(|&b| char::from(b)).collect();
-            let of = |(name, upper): &(&'static str, &str)| {
-                let upper: Vec<char> = upper.chars().collect();
-                let character = |&b: &u8| b.checked_sub(0x80).map_or(char::from(b), |at| upper[usize::from(at)]);
-                let text: String = bytes.iter().map(character).collect();
-                (understood(&text), text, *name)
+            let by = |bytes: &[u8], upper: &[char]| -> String {
+                let high = |b: u8| b.checked_sub(0x80).and_then(|at| upper.get(usize::from(at)).copied());
+                bytes.iter().map(|&b| high(b).unwrap_or(char::from(b))).collect()
             };
-            let others = UPPER.iter().map(of).filter(|(count, _, _)| *count > understood(&latin));
-            match others.max_by_key(|(count, _, _)| *count) {
-                Some((_, text, name)) => (Cow::Owned(text), Some(name)),
-                None => (Cow::Owned(latin), Some("Latin-1")),
-            }
+            let beginning = &bytes[..bytes.len().min(MANY)];
+            let known = |upper: &[char]| understood(&by(beginning, upper));
+            let least = known(&[]);
+            let others = UPPER.iter().map(|(name, upper)| (*name, upper.chars().collect::<Vec<_>>()));
+            let others = others.map(|(name, upper)| (known(&upper), name, upper));
+            let best = others.filter(|(count, _, _)| *count > least).max_by_key(|(count, _, _)| *count);
+            let (name, upper) = best.map_or(("Latin-1", Vec::new()), |(_, name, upper)| (name, upper));
+            (Cow::Owned(by(bytes, &upper)), Some(name))
         }
     }
 }

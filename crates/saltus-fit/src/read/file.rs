@@ -109,7 +109,9 @@ fn joined_up<'a>(
     }
     // A film is of one rate; above each table its own height of release may stand.
     let mut stated = Vec::new();
-    let called = || Some((clause::frame_rate(&grid.called())?, None));
+    let name = grid.called();
+    let units = title::named(&name);
+    let called = || Some((clause::frame_rate(&name)?, None));
     let said = || titles.iter().find_map(|title| title.fps).map(|(fps, line)| (fps, Some(line)));
     if metadata.frame_rate.is_none()
         && let Some((fps, line)) = said().or_else(called)
@@ -127,8 +129,7 @@ fn joined_up<'a>(
             sigma_time: metadata.sigma_time.or(title.sigma.1),
             ..metadata
         };
-        let named = title::named(&grid.called());
-        let said = (title.units.0.or(named.0), title.units.1.or(named.1));
+        let said = (title.units.0.or(units.0), title.units.1.or(units.1));
         region.units = (region.units.0.or(said.0), region.units.1.or(said.1));
         region.drop = title.drop.as_ref().map(|(drop, _)| drop.clone());
         // Whoever states the zero or the height of release answers it.

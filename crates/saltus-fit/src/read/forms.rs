@@ -12,6 +12,8 @@ mod sentences;
 mod values;
 mod wiki;
 
+use std::collections::HashMap;
+
 pub(super) use blocks::bulleted;
 pub(super) use printed::{dumped, indexed};
 use values::{LIST, length, listed_numbers, listed_values, named_list};
@@ -297,9 +299,10 @@ fn patterned(text: &str) -> Option<String> {
         return None;
     }
     let patterns: Vec<Option<Vec<String>>> = lines.iter().map(|line| pattern(line)).collect();
-    let times = |one: &&Vec<String>| patterns.iter().flatten().filter(|other| other == one).count();
+    let mut times: HashMap<&Vec<String>, usize> = HashMap::new();
+    patterns.iter().flatten().for_each(|pattern| *times.entry(pattern).or_default() += 1);
     // Of those that most lines have the first.
-    let first = patterns.iter().flatten().rev().max_by_key(times)?;
+    let first = patterns.iter().flatten().rev().max_by_key(|pattern| times[pattern])?;
     let alike = |n: usize| patterns[n].as_ref() == Some(first);
     let rows: Vec<usize> = (0..lines.len()).filter(|&n| alike(n)).collect();
     let filled = lines.iter().filter(|line| !parts(line).0.is_empty()).count();

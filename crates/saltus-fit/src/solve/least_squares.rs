@@ -60,11 +60,17 @@ pub(crate) fn solve(x: &DMatrix<f64>, y: &DVector<f64>, bounds: &[Bounds]) -> Re
 /// The same for a step on the way to a minimum, and for what is compared and not reported: the
 /// solver is asked only where the factorisation alone does not find which bounds hold.
 pub(crate) fn settle(x: &DMatrix<f64>, y: &DVector<f64>, bounds: &[Bounds]) -> Result<Solution, Failure> {
-    minimum(x, y, bounds, |scaled, free| scaled.mended(vec![None; free.len()]).or_else(|_| scaled.bounded(free)))
+    minimum(x, y, bounds, |scaled, free| {
+        let none = vec![None; free.0.len()];
+        match scaled.violation(&free.0, &none) {
+            None => Ok((free, none)),
+            Some(_) => scaled.mended(none).or_else(|_| scaled.bounded(free)),
+        }
+    })
 }
 
 /// What finds the minimum within the bounds, given the free one.
-type Way = fn(&Scaled, &DVector<f64>) -> Result<(Direct, Vec<Option<Side>>), Failure>;
+type Way = fn(&Scaled, Direct) -> Result<(Direct, Vec<Option<Side>>), Failure>;
 
 fn minimum(x: &DMatrix<f64>, y: &DVector<f64>, bounds: &[Bounds], way: Way) -> Result<Solution, Failure> {
     let (rows, n) = x.shape();
@@ -91,7 +97,7 @@ fn minimum(x: &DMatrix<f64>, y: &DVector<f64>, bounds: &[Bounds], way: Way) -> R
         high: (0..n).map(|j| bounds[j].high * (column[j] / length)).collect(),
     };
     let free = scaled.direct(&vec![None; n]).ok_or(Failure::NotIdentified)?;
-    let ((z, inverse), active) = way(&scaled, &free.0)?;
+    let ((z, inverse), active) = way(&scaled, free)?;
     let mut answer = DVector::from_fn(n, |j, _| z[j] * length / column[j]);
     for j in 0..n {
         // Snap: an unknown at a bound is on it, not 1e-10 beside it.
@@ -173,7 +179,7 @@ impl Scaled {
     /// open; it is then mended bound by bound until the conditions of a minimum hold, which for a
     /// convex problem make it the only one. The two are compared by what they minimise, which is
     /// sharp where the unknowns are not.
-    fn bounded(&self, free: &DVector<f64>) -> Result<(Direct, Vec<Option<Side>>), Failure> {
+    fn bounded(&self, (free, _): Direct) -> Result<(Direct, Vec<Option<Side>>), Failure> {
         let reach = FAR * (1.0 + free.amax());
         // Should the solver give up, the conditions of a minimum still decide alone.
         let (solver, active) = match self.conic(reach).or_else(|_| self.conic(f64::INFINITY)) {

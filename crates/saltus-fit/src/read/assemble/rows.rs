@@ -250,10 +250,10 @@ impl Builder<'_> {
         let rebound = track.height.or(track.after).or(track.lost).or(track.share).or(timed);
         let before = track.release.or(track.before);
         if let Some(share) = track.share.filter(|_| before.is_none() && track.drop.is_none()) {
-            return self.rebound(row, track, share, (1.0, None));
+            return self.rebound(row, track, share, |_| Ok((1.0, None)));
         }
         if let Some((drop, rebound)) = track.drop.filter(|_| before.is_none()).zip(rebound) {
-            return self.rebound(row, track, rebound, (drop, None));
+            return self.rebound(row, track, rebound, |_| Ok((drop, None)));
         }
         let Some((before, rebound)) = before.zip(rebound) else {
             return match rebound.or(before) {
@@ -268,11 +268,10 @@ impl Builder<'_> {
                 _ => Ok(()),
             };
         };
-        if self.lacks(row.at, rebound) {
-            return Ok(());
-        }
-        let drop = self.height(self.spanning(row.at, before), before)?.ok_or_else(|| self.empty(row.at, before))?;
-        self.rebound(row, track, rebound, drop)
+        self.rebound(row, track, rebound, |builder| {
+            let drop = builder.height(builder.spanning(row.at, before), before)?;
+            drop.ok_or_else(|| builder.empty(row.at, before))
+        })
     }
 
     /// Whether a drop has no rebound, which is named as left aside; words in its place say why.
@@ -289,17 +288,18 @@ impl Builder<'_> {
         empty
     }
 
-    /// The rebound of a row from a known height.
+    /// The rebound of a row, if there is one, from the height that `drop` finds.
     fn rebound(
         &mut self,
         row: &Row,
         track: &Track,
         rebound: usize,
-        (drop, sigma): (f64, Option<f64>),
+        drop: impl FnOnce(&Self) -> Result<(f64, Option<f64>), TableError>,
     ) -> Result<(), TableError> {
         if self.lacks(row.at, rebound) {
             return Ok(());
         }
+        let (drop, sigma) = drop(self)?;
         let line = self.line(row.at, rebound);
         let trial = self.push(row, track, &format!("line {line}"))?;
         if !track.released() {

@@ -188,10 +188,8 @@ impl Columns {
                 let of_one = |v: &Value| (v.what, v.at, v.role) == (one.value.what, one.value.at, one.value.role);
                 let units = || region.rows.iter().filter_map(|&row| cell(row, one.index).map(|unit| (row, unit)));
                 let beside = || named.iter().any(|n| n.index.abs_diff(index) == 1);
-                let bare = || {
-                    let alike = units().all(|(row, unit)| cell(row, index) == Some(unit));
-                    whole && units().count() > 1 && alike && beside()
-                };
+                let alike = || units().all(|(row, unit)| cell(row, index) == Some(unit));
+                let bare = || whole && beside() && units().nth(1).is_some() && alike();
                 one.rest == rest && heading.value().map_or_else(bare, of_one)
             };
             if let Some(Named { value, kind, .. }) = named.iter().find(same) {

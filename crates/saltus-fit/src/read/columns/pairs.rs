@@ -30,18 +30,16 @@ impl Columns {
 
     /// Beside the speeds before and after each bounce the heights of release say nothing more.
     pub(super) fn sided(&mut self) {
-        let read = |what: What, at: &[At]| {
-            let of = |v: &Value| v.role == Role::Reading && v.what == what && at.contains(&v.at);
-            self.values()
-                .filter(|(_, c, v)| of(v) && c.heading.unknown.is_empty())
-                .map(|(n, _, _)| n)
-                .collect::<Vec<_>>()
+        let read = |what: What, at: At| {
+            let of = |v: &Value| v.role == Role::Reading && v.what == what && v.at == at;
+            let read = self.values().filter(|(_, c, v)| of(v) && c.heading.unknown.is_empty());
+            read.map(|(n, _, _)| n).collect::<Vec<_>>()
         };
-        let speeds = [At::Before, At::After].map(|at| read(What::Speed, &[at]));
-        if speeds.iter().any(Vec::is_empty) || !read(What::Height, &[At::Row]).is_empty() {
+        let sided = [At::Before, At::After].iter().all(|&at| !read(What::Speed, at).is_empty());
+        if !sided || !read(What::Height, At::Row).is_empty() {
             return;
         }
-        for index in read(What::Height, &[At::Release]) {
+        for index in read(What::Height, At::Release) {
             self.leave(index, Why::Elsewhere);
         }
     }
@@ -60,11 +58,12 @@ impl Columns {
                 _ => clock(region.cell(row, index)).is_none(),
             })
         };
-        for (_, column) in self.columns.iter_mut().enumerate().filter(|(index, _)| bare(*index)) {
+        for (index, column) in self.columns.iter_mut().enumerate() {
             let name = column.heading.text.rsplit([' ', ':']).next().unwrap_or_default();
             let number = name.strip_prefix('T').filter(|n| n.parse::<u32>().is_ok());
             if let (Some(number), Kind::Value(value)) = (number, &mut column.kind)
                 && value.what == What::Time
+                && bare(index)
             {
                 (value.what, value.at) = (What::Unsaid, At::Row);
                 value.trial = format!("trial {number}");
