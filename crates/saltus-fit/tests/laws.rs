@@ -26,7 +26,7 @@ fn parse(text: &str) -> Table {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn exact_heights_give_their_cor_back(e in 0.05..0.999f64, h0 in 0.02..20.0f64, count in 2usize..9) {
@@ -231,11 +231,11 @@ fn heights_and_times_that_agree_are_trusted_together() {
 }
 
 #[test]
-fn two_hundred_thousand_rows_give_their_common_cor() {
+fn a_million_rows_give_their_common_cor() {
     let mut noise = Noise(3);
-    let mut text = String::with_capacity(4_000_000);
+    let mut text = String::with_capacity(20_000_000);
     text.push_str("trial,bounce,height_cm\n");
-    for trial in 0..20_000 {
+    for trial in 0..100_000 {
         for n in 0..10 {
             use std::fmt::Write;
             let height = 100.0 * 0.8f64.powi(2 * n) + noise.normal(0.1);
@@ -243,5 +243,5 @@ fn two_hundred_thousand_rows_give_their_common_cor() {
         }
     }
     let report = Fit::new().sigma_height(0.001).run(&parse(&text)).unwrap();
-    assert!((cor(&report) - 0.8).abs() < 1e-5, "{}", cor(&report));
+    assert!((cor(&report) - 0.8).abs() < 5e-6, "{}", cor(&report));
 }
