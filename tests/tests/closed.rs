@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
+use proptest::prelude::*;
 use saltus::nalgebra::{Vector2, vector};
 use saltus::{Automaton, Dop853, Edges, Fall, Jump, Refusal, Simulation, Solution, Stop};
 use saltus_bounce::flight::{QuadraticDragFlight, VerticalFlight};
@@ -85,5 +86,56 @@ fn three_ways_agree() {
             assert!((a - b).abs() < 1e-12, "{a} {b}");
         }
         assert!((other.1 - formula.1).norm() < 1e-11);
+    }
+}
+
+/// A decay x' = -x whose formula adds a number, and takes it away again.
+struct Cancelling {
+    beside: f64,
+}
+
+impl Cancelling {
+    fn after(&self, (): (), _t: f64, x: &f64, s: f64) -> f64 {
+        (self.beside + x * (-s).exp()) - self.beside
+    }
+}
+
+impl Automaton for Cancelling {
+    type Mode = ();
+    type State = f64;
+    type Edge = ();
+
+    fn flow(&self, (): (), _t: f64, x: &f64) -> f64 {
+        -x
+    }
+    fn edges(&self, (): ()) -> Edges<'_, ()> {
+        Edges::none()
+    }
+    fn guard(&self, (): (), _t: f64, _x: &f64) -> f64 {
+        1.0
+    }
+    fn reset(&self, (): (), (): (), _t: f64, x: &f64) -> Result<((), f64), Refusal> {
+        Ok(((), *x))
+    }
+    fn solution(&self, (): (), _t: f64, _x: &f64) -> Solution<Self> {
+        Solution::Formula(Self::after)
+    }
+}
+
+proptest! {
+    /// However deep a solution decays into the rounding of its formula, its pieces are as many as a
+    /// smooth solution takes, and no farther from it than the formula is.
+    #[test]
+    fn a_formula_that_cancels_takes_no_more_pieces(digits in 0.0..6.0_f64, sign in prop::bool::ANY) {
+        let beside = if sign { 1.0 } else { -1.0 } * 10.0_f64.powf(digits);
+        let run = Simulation::of(&Cancelling { beside }).most_steps(1000).run((), 1.0, 0.0..50.0).unwrap();
+        prop_assert_eq!(run.end.stop, Stop::Time);
+        let pieces: Vec<_> = run.trajectory.pieces(0).collect();
+        prop_assert!(pieces.len() < 100, "{} pieces", pieces.len());
+        for piece in &pieces {
+            let s = 0.4 * piece.span();
+            let off = (piece.at(s) - (-piece.start().seconds() - s).exp()).abs();
+            prop_assert!(off < 1e-11 + 100.0 * f64::EPSILON * beside.abs(), "{off:e}");
+        }
     }
 }

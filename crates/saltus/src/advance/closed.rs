@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use crate::automaton::Automaton;
 use crate::automaton::solution::Formula;
-use crate::certainty::{FEW, NOTHING, TINY};
+use crate::certainty::{FEW, MINUTE, NOTHING, TINY};
 use crate::cross::chebyshev;
 use crate::ending::Stop;
 use crate::error::{Error, ErrorKind, Place};
@@ -87,15 +87,22 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         // A solution that no polynomial follows over so short a piece is followed by none.
         let shortest = TINY * if natural > 0.0 { span.min(natural) } else { span };
         let mut pieces = 0;
+        // What the formula is rough by, as far as pieces have shown it, and how far the last was off.
+        let (mut noise, mut longer) = (x.with(|_| 0.0), None);
         // Of a long arc the first piece is as long as the solution takes to change.
         let (mut from, mut length) = (0.0, if natural > 0.0 { span.min(FIRST * natural) } else { span });
         while from < span {
             let last = from + length >= span;
             let h = if last { span - from } else { length };
             let c = fitted(|u| at(from + h * u));
-            if h > shortest && !fits(&c, |u| at(from + h * u), h, now.seconds().abs() + from + h) {
-                length = 0.5 * h;
-                continue;
+            if h > shortest {
+                let fit = Fit::of(&c, |u| at(from + h * u), h, now.seconds().abs() + from + h);
+                if !fit.holds(&noise) && !longer.as_ref().is_some_and(|longer| fit.is_rough(longer, &noise)) {
+                    (longer, length) = (Some(fit.off), 0.5 * h);
+                    continue;
+                }
+                noise = x.with(|i| if fit.is_off(i) { noise.get(i).max(fit.off.get(i)) } else { noise.get(i) });
+                longer = None;
             }
             let told = observer.piece(mode, &Piece::new(now.after(from), h, h, &c));
             from = if last { span } else { from + h };
@@ -115,20 +122,51 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
 /// Where on a piece it is compared with the solution: between the nodes of its interpolant.
 const FITS_AT: [f64; 3] = [0.221_324_6, 0.635_914_1, 0.97];
 
-/// Whether the powers `c` of the part u of a piece of length `h`, which ends `late`, are as good as
-/// the exact state `at` it.
-fn fits<S: State>(c: &[S], at: impl Fn(f64) -> S, h: f64, late: f64) -> bool {
-    FITS_AT.iter().all(|&u| {
-        let (exact, fit) = (at(u), horner(c, u));
-        (0..exact.len()).all(|i| {
-            let most = c.iter().map(|c| c.get(i).abs()).fold(0.0, f64::max);
-            // No nearer than the rounding of time allows, late in an arc that swings or in a run,
-            // nor than the smallest numbers can say.
-            let rate: f64 = c.iter().enumerate().map(|(k, c)| k as f64 * c.get(i).abs()).sum();
-            let hidden = f64::MIN_POSITIVE + FEW * f64::EPSILON * rate * late / h;
-            (exact.get(i) - fit.get(i)).abs() <= NOTHING * most + hidden
-        })
-    })
+/// How far the powers of a piece are off the exact state, coordinate by coordinate.
+struct Fit<S> {
+    off: S,
+    /// What they may be off by.
+    allowed: S,
+    /// The largest power.
+    size: S,
+}
+
+impl<S: State> Fit<S> {
+    /// The powers `c` of the part u of a piece of length `h`, which ends `late`, beside the exact
+    /// state `at` it.
+    fn of(c: &[S], at: impl Fn(f64) -> S, h: f64, late: f64) -> Self {
+        let beside = FITS_AT.map(|u| (at(u), horner(c, u)));
+        // No number where one of them is none.
+        let larger = |off: f64, by: f64| if off.is_nan() || by <= off { off } else { by };
+        let off = |i: usize| beside.iter().map(|(exact, fit)| (exact.get(i) - fit.get(i)).abs()).fold(0.0, larger);
+        let size = c[0].with(|i| c.iter().map(|c| c.get(i).abs()).fold(0.0, f64::max));
+        // No nearer than the rounding of time allows, late in an arc that swings or in a run, nor
+        // than the smallest numbers can say.
+        let rate = |i: usize| c.iter().enumerate().map(|(k, c)| k as f64 * c.get(i).abs()).sum::<f64>();
+        let hidden = |i: usize| f64::MIN_POSITIVE + FEW * f64::EPSILON * rate(i) * late / h;
+        let allowed = size.with(|i| NOTHING * size.get(i) + hidden(i));
+        Self { off: size.with(off), allowed, size }
+    }
+
+    fn is_off(&self, i: usize) -> bool {
+        let fits = self.off.get(i) <= self.allowed.get(i);
+        !fits // nor what is no number
+    }
+
+    /// Whether the powers are as good as the exact state, which is rough by the `noise`.
+    fn holds(&self, noise: &S) -> bool {
+        (0..self.off.len()).all(|i| !self.is_off(i) || self.off.get(i) <= FEW * noise.get(i))
+    }
+
+    /// Whether what they are off by, beside a piece twice as long, is the rounding of a formula
+    /// that cancels: nine digits are right, and half of the length has not mended half of it.
+    fn is_rough(&self, longer: &S, noise: &S) -> bool {
+        let rough = |i: usize| {
+            let off = self.off.get(i);
+            off <= MINUTE * self.size.get(i) && 2.0 * off > longer.get(i) || off <= FEW * noise.get(i)
+        };
+        (0..self.off.len()).all(|i| !self.is_off(i) || rough(i))
+    }
 }
 
 /// The powers of u of the interpolant of degree eight on `0..=1`.
