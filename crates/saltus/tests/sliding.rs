@@ -2,8 +2,8 @@
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
-use nalgebra::{Vector2, vector};
 use proptest::prelude::*;
+use saltus::nalgebra::{self, Vector2, vector};
 use saltus::{Auto, Automaton, Dop853, ErrorKind, Filippov, Rodas5P, Side, Sides, Simulation, Stop, Tsit5, TwoSided};
 
 /// Slides begin and end many times, at every phase, on a surface that moves and is no coordinate:
