@@ -52,9 +52,16 @@ export async function give(page, files) {
   await page.waitForFunction(() => document.getElementById("said").textContent !== "" && document.getElementById("result").getAttribute("aria-busy") === "false");
 }
 
-/// What a button gives to be saved: its name and bytes.
-export async function saved(page, button) {
-  const [download] = await Promise.all([page.waitForEvent("download"), page.click(button)]);
+/// What a button gives to be saved: its name and bytes. Chromium now and then begins no download
+/// for a click, and does for the next: faults of the page itself are asked for at its end.
+export async function saved(page, button, tries = 3) {
+  const begun = page.waitForEvent("download", { timeout: 10_000 }).catch((error) => error);
+  await page.click(button);
+  const download = await begun;
+  if (download instanceof Error) {
+    if (tries > 1) return saved(page, button, tries - 1);
+    throw download;
+  }
   const parts = [];
   for await (const part of await download.createReadStream()) parts.push(part);
   return { name: download.suggestedFilename(), bytes: Buffer.concat(parts) };
