@@ -19,7 +19,7 @@ cases! {
 
 /// The jumps by which the ball meets the floor.
 fn impacts<M: Copy, E: Copy + PartialEq, S: State>(run: &Run<M, E, S>, floor: E) -> Vec<Jump<M, E, S>> {
-    run.trajectory.jumps().iter().filter(|jump| jump.edge() == Some(floor)).copied().collect()
+    run.trajectory.jumps().iter().filter(|jump| jump.edge() == Some(floor)).cloned().collect()
 }
 
 /// When the bounces are over: the last jump.

@@ -28,7 +28,7 @@ fn run<T: TwoSided>(case: &mut Report, system: &Filippov<T>, x: T::State, end: f
 }
 
 fn into<E: Copy, S: State>(run: &Run<Side, E, S>, side: Side) -> Vec<Jump<Side, E, S>> {
-    run.trajectory.jumps().iter().filter(|jump| jump.to == side).copied().collect()
+    run.trajectory.jumps().iter().filter(|jump| jump.to == side).cloned().collect()
 }
 
 fn relay(case: &mut Report) {

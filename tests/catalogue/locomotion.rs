@@ -39,7 +39,7 @@ fn walks<A: Automaton>(
 ) -> Vec<JumpOf<A>> {
     let run: RunOf<A> = Simulation::of(walker).stepper(Dop853).tolerance(1e-13).run(mode, x, 0.0..end).unwrap();
     case.ran(&run.end.stats);
-    run.trajectory.jumps().iter().filter(|jump| jump.edge() == Some(edge)).copied().collect()
+    run.trajectory.jumps().iter().filter(|jump| jump.edge() == Some(edge)).cloned().collect()
 }
 
 fn slip_runner(case: &mut Report) {

@@ -28,7 +28,7 @@ impl<'a, A: Automaton, F: FnMut(&JumpOf<A>)> Samples<'a, A, F> {
 
     /// The state at the time of this place, and how many jumps came before it.
     pub(crate) fn state(&self, place: usize) -> (A::State, usize) {
-        self.states[place]
+        self.states[place].clone()
     }
 }
 
@@ -49,7 +49,7 @@ impl<A: Automaton, F: FnMut(&JumpOf<A>)> Observer<A> for Samples<'_, A, F> {
     fn jump(&mut self, jump: &JumpOf<A>) -> ControlFlow<()> {
         self.count = jump.j;
         if self.numbers.get(self.jumps.len()) == Some(&jump.j) {
-            self.jumps.push(*jump);
+            self.jumps.push(jump.clone());
         }
         (self.look)(jump);
         ControlFlow::Continue(())

@@ -24,7 +24,7 @@ fn watched_as<'a, S: State + 'a>(
     guard: impl Fn(f64, &S) -> f64 + Send + Sync + Copy + 'a,
     about: impl Fn(Edge<'a, S>) -> Edge<'a, S>,
 ) -> Hybrid<'a, S> {
-    let falls = about(Edge::new(guard, |_t, x| *x)).entry(Entry::Wait);
-    let rises = about(Edge::new(move |t, x| -guard(t, x), |_t, x| *x)).entry(Entry::Wait);
+    let falls = about(Edge::new(guard, |_t, x| x.clone())).entry(Entry::Wait);
+    let rises = about(Edge::new(move |t, x| -guard(t, x), |_t, x| x.clone())).entry(Entry::Wait);
     Hybrid::new().mode("run", flow).edge_with("run", "run", falls).edge_with("run", "run", rises)
 }

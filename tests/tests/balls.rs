@@ -14,7 +14,7 @@ fn cor(e: f64) -> Cor {
 
 /// The jumps by which the ball meets the floor.
 fn impacts<M: Copy, E: Copy + PartialEq, S: State>(run: &Run<M, E, S>, floor: E) -> Vec<Jump<M, E, S>> {
-    run.trajectory.jumps().iter().filter(|jump| jump.edge() == Some(floor)).copied().collect()
+    run.trajectory.jumps().iter().filter(|jump| jump.edge() == Some(floor)).cloned().collect()
 }
 
 /// The bounces of every flight under every restitution come to rest where the flights' own formulas

@@ -39,14 +39,14 @@ fn check<A: Automaton, M: Stepper>(
     A::State: PartialEq,
 {
     use saltus::State;
-    let run = simulation.run(mode, x, 0.0..end).unwrap();
+    let run = simulation.run(mode, x.clone(), 0.0..end).unwrap();
     for rate in [24.0, 30.0, 60.0, 240.0, 1.0, 0.0] {
         let times = frames(rate, end);
-        let mut live = Live::start(automaton, simulation, mode, x, 0.0..end).unwrap();
+        let mut live = Live::start(automaton, simulation, mode, x.clone(), 0.0..end).unwrap();
         let mut met: Vec<JumpOf<A>> = Vec::new();
         for &t in &times {
             let before = met.len();
-            let frame = live.advance_to(t, |jump| met.push(*jump)).unwrap();
+            let frame = live.advance_to(t, |jump| met.push(jump.clone())).unwrap();
             assert!(!frame.late && frame.t == t);
             assert!(met[before..].iter().all(|jump| jump.t() <= t));
             let shown = run.trajectory.at(t).unwrap();

@@ -112,14 +112,14 @@ impl<A: Automaton> Observer<A> for Ahead<'_, A> {
             return ControlFlow::Break(());
         }
         let list = piece.coefficients();
-        let coefficients = std::array::from_fn(|k| list[k.min(list.len() - 1)]);
+        let coefficients = std::array::from_fn(|k| list[k.min(list.len() - 1)].clone());
         let len = list.len().min(COEFFICIENTS);
         pieces.push(Kept { start: piece.start(), span: piece.span(), scale: piece.scale(), coefficients, len });
         ControlFlow::Continue(())
     }
     fn jump(&mut self, jump: &JumpOf<A>) -> ControlFlow<()> {
         let place = usize::from(self.jumps[0].is_some());
-        self.jumps[place] = Some(*jump);
+        self.jumps[place] = Some(jump.clone());
         ControlFlow::Continue(())
     }
 }
@@ -137,7 +137,7 @@ impl<'a, A: Automaton, M: Stepper> Live<'a, A, M> {
         span: Range<f64>,
     ) -> Result<Self, Error> {
         let (now, end) = (Time::new(span.start), Time::new(span.end));
-        let from = simulation.start(mode, state, span)?.checkpoint();
+        let from = simulation.start(mode, state.clone(), span)?.checkpoint();
         let mut live = Self {
             automaton,
             simulation,
@@ -145,7 +145,7 @@ impl<'a, A: Automaton, M: Stepper> Live<'a, A, M> {
             mode,
             state,
             next: None,
-            jumps: [None; 2],
+            jumps: [None, None],
             pieces: Vec::new(),
             before: 0,
             stands: false,
@@ -199,18 +199,19 @@ impl<'a, A: Automaton, M: Stepper> Live<'a, A, M> {
         let mut count = 0;
         let mut last = None;
         loop {
-            match self.jumps {
-                [Some(jump), later] if jump.time <= self.now => {
+            match &self.jumps {
+                [Some(jump), _] if jump.time <= self.now => {
                     if count == self.most_jumps {
-                        let t = last.map_or(self.now.seconds(), |jump: JumpOf<A>| jump.t());
-                        return Ok(Frame { t, mode: self.mode, state: self.state, late: true });
+                        let t = last.unwrap_or(self.now.seconds());
+                        return Ok(Frame { t, mode: self.mode, state: self.state.clone(), late: true });
                     }
                     count += 1;
-                    event(&jump);
-                    (self.mode, self.state, last) = (jump.to, jump.after, Some(jump));
-                    self.jumps = [later, None];
-                    self.stands = later.is_some();
-                    if later.is_none() {
+                    event(jump);
+                    (self.mode, self.state, last) = (jump.to, jump.after.clone(), Some(jump.t()));
+                    self.jumps.rotate_left(1);
+                    self.jumps[1] = None;
+                    self.stands = self.jumps[0].is_some();
+                    if !self.stands {
                         if let Some(next) = self.next.take() {
                             self.from = next;
                         }
@@ -248,7 +249,8 @@ impl<'a, A: Automaton, M: Stepper> Live<'a, A, M> {
             self.pieces.reserve_exact(PIECES);
         }
         let mut course = self.simulation.resume(self.from.clone());
-        let mut ahead = Ahead { pieces: (!formula).then_some(&mut self.pieces), skip: self.before, jumps: [None; 2] };
+        let mut ahead =
+            Ahead { pieces: (!formula).then_some(&mut self.pieces), skip: self.before, jumps: [None, None] };
         let stop = course.advance(&mut ahead)?;
         self.jumps = ahead.jumps;
         self.stands |= self.jumps[0].is_none() && !matches!(stop, Some(Stop::Time | Stop::Observer));
@@ -261,7 +263,7 @@ impl<'a, A: Automaton, M: Stepper> Live<'a, A, M> {
         let from = self.from.time();
         let s = self.now.since(from);
         if self.stands {
-            return self.state;
+            return self.state.clone();
         }
         let t = from.seconds();
         let solution = self.automaton.solution(self.mode, t, &self.state);
@@ -269,7 +271,7 @@ impl<'a, A: Automaton, M: Stepper> Live<'a, A, M> {
             return state;
         }
         let after = self.pieces.partition_point(|piece| self.now.since(piece.start) >= 0.0);
-        let Some(piece) = self.pieces.get(after.saturating_sub(1)) else { return self.state };
+        let Some(piece) = self.pieces.get(after.saturating_sub(1)) else { return self.state.clone() };
         let u = self.now.since(piece.start).min(piece.span) / piece.scale;
         let c = &piece.coefficients[..piece.len];
         c[0].with(|i| c.iter().rev().fold(0.0, |sum, c| sum * u + c.get(i)))

@@ -15,7 +15,7 @@ use syn::{
 ///
 /// Coordinates are counted field by field, in the order in which the fields stand. Each is named by
 /// its field: `voltage`, `arm[2]`, `load.speed`. `#[unit("V")]` before a field is the unit of all
-/// its coordinates; without it they have their own, if any. The struct is to be `Copy` and `Debug`
+/// its coordinates; without it they have their own, if any. The struct is to be `Clone` and `Debug`
 /// as well.
 ///
 /// A struct without fields, an enum and a union are refused as the program is compiled.

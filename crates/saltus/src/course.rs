@@ -46,7 +46,7 @@ pub struct Course<'a, A: Automaton, M = Auto> {
 
 /// Where a run stands just after a jump, handed on to the next arc: read back from where it is
 /// kept, it would be waited for.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 struct Stand<M, S> {
     mode: M,
     state: S,
@@ -112,7 +112,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
     /// The state reached, x⁺ of the last jump.
     #[must_use]
     pub fn state(&self) -> A::State {
-        self.at.state
+        self.at.state.clone()
     }
 
     /// How many jumps there have been.
@@ -157,7 +157,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         let stop = match self.stopped() {
             Some(stop) => stop,
             None => {
-                let mut stand = Stand { mode, state: *state, now, elapsed: now.since(self.at.span.start) };
+                let mut stand = Stand { mode, state: state.clone(), now, elapsed: now.since(self.at.span.start) };
                 loop {
                     if let Some(stop) = self.step(&mut stand, observer)? {
                         break stop;
@@ -166,7 +166,8 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
             }
         };
         self.at.stop = Some(stop);
-        let Stage { mode, state, span, jumps, limits, .. } = self.at;
+        let Stage { mode, span, jumps, limits, .. } = self.at;
+        let state = self.at.state.clone();
         Ok(Ending { stop, stats: self.stats(), time: span.now, jumps, mode, state, limits })
     }
 
@@ -191,8 +192,8 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
 
     #[inline]
     fn stand(&self) -> StandOf<A> {
-        let Stage { mode, state, span: Span { start, now, .. }, .. } = self.at;
-        Stand { mode, state, now, elapsed: now.since(start) }
+        let Stage { mode, span: Span { start, now, .. }, .. } = self.at;
+        Stand { mode, state: self.at.state.clone(), now, elapsed: now.since(start) }
     }
 
     #[inline]
@@ -223,7 +224,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
     fn arc_and_jump(&mut self, stand: &mut StandOf<A>, observer: &mut impl Observer<A>) -> Result<Next<A>, Error> {
         let automaton = self.arc.automaton;
         // x is x⁺ of the last jump, or the initial state.
-        let Stand { mode, state: x, now, elapsed } = *stand;
+        let Stand { mode, state: x, now, elapsed } = stand.clone();
         let Span { start, end, .. } = self.at.span;
         let due = self.at.ticks.next(automaton, mode, &x, &Span { start, now, end })?;
         let end = due.as_ref().map_or(end, |due| later_stop(&automaton.stops(mode), due.time));
@@ -255,7 +256,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         observer: &mut impl Observer<A>,
     ) -> Result<Next<A>, Error> {
         let mut stand = self.stand();
-        let Stand { mode, state: x, now, .. } = stand;
+        let Stand { mode, state: x, now, .. } = stand.clone();
         let end = match begun {
             Begun::Crossing(edge) => ArcEnd::Crossing { edge, time: now, before: x },
             Begun::Over => ArcEnd::Stop { stop: Stop::Time, time: span.end, state: x },
@@ -292,34 +293,44 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         crossed: Crossed<A>,
         observer: &mut impl Observer<A>,
     ) -> Result<Next<A>, Error> {
-        let Stand { mode, state: x, now: began, .. } = *stand;
+        let Stand { mode, state: x, now: began, .. } = stand.clone();
         let Crossed { edge, time, before, ticked } = crossed;
         let Self { arc, at } = self;
         let automaton = arc.automaton;
         let now = time.seconds();
-        let (to, after) =
-            automaton.reset(mode, edge, now, &before).map_err(|refusal| refused(refusal, now, mode, edge, before))?;
+        let (to, after) = automaton
+            .reset(mode, edge, now, &before)
+            .map_err(|refusal| refused(refusal, now, mode, edge, before.clone()))?;
         let duration = time.since(began);
         let since = time.since(at.instant);
         let at_once = arc.memory.at_once(since);
         // The same edge taken again at once changes nothing: the limit is here.
-        let stands = duration == 0.0 && !ticked && to == mode && arc.memory.just_took(edge) && same(&{ x }, &{ after });
+        let stands =
+            duration == 0.0 && !ticked && to == mode && arc.memory.just_took(edge) && same(&x.clone(), &after.clone());
         if !stands {
             if at_once {
-                at.cascade = at.cascade.and(x, after);
+                at.cascade = at.cascade.and(x.clone(), after.clone());
             } else {
                 at.instant = time;
                 if at.cascade.jumps() > 0 {
                     at.cascade = Cascade::NONE;
                 }
             }
-            if !after.is_finite() || to != mode && automaton.validate(to, now, &{ after }).is_err() {
-                let (kind, note) = wrong(automaton, to, now, after);
-                return Err(Error::new(kind, Place::new(now, mode, Some(edge), &{ before })).noting(Some(note)));
+            if !after.is_finite() || to != mode && automaton.validate(to, now, &after.clone()).is_err() {
+                let (kind, note) = wrong(automaton, to, now, after.clone());
+                return Err(Error::new(kind, Place::new(now, mode, Some(edge), &before.clone())).noting(Some(note)));
             }
             // From where it was computed, not by way of the jump, which lies in memory.
-            (at.span.now, at.mode, at.state, at.jumps) = (time, to, after, at.jumps + 1);
-            let jump = Jump { time: at.instant, j: at.jumps, cause: Cause::Edge(edge), from: mode, before, to, after };
+            (at.span.now, at.mode, at.state, at.jumps) = (time, to, after.clone(), at.jumps + 1);
+            let jump = Jump {
+                time: at.instant,
+                j: at.jumps,
+                cause: Cause::Edge(edge),
+                from: mode,
+                before: before.clone(),
+                to,
+                after: after.clone(),
+            };
             if observer.jump(&jump).is_break() {
                 return Ok(Next::Stop(Stop::Observer));
             }
@@ -408,29 +419,30 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
     ) -> Result<Option<Stop<A::Edge>>, Error> {
         let Self { arc, at } = self;
         let automaton = arc.automaton;
-        let (mode, last, remaining) = (at.mode, at.state, ahead.remaining);
+        let (mode, last, remaining) = (at.mode, at.state.clone(), ahead.remaining);
         let x = at.contraction.at(&ahead, &last);
         if remaining > 0.0 {
-            let way = [last, x.with(|i| x.get(i) - last.get(i))];
+            let difference = x.with(|i| x.get(i) - last.get(i));
+            let way = [last, difference];
             if observer.piece(mode, &Piece::new(at.span.now, remaining, remaining, &way)).is_break() {
                 return Ok(Some(Stop::Observer));
             }
         }
-        (at.span.now, at.state) = (at.span.now.after(remaining), x);
+        (at.span.now, at.state) = (at.span.now.after(remaining), x.clone());
         let limit = at.span.now.seconds();
         let beyond = |edges: &[A::Edge]| automaton.beyond(&Limit::new(mode, edges, limit, &x));
         let Some((to, after)) = at.recent.cycle().with(beyond) else {
             return Ok(Some(if certified { Stop::Zeno { limit } } else { Stop::Resolution { limit } }));
         };
         if !after.is_finite() || automaton.validate(to, limit, &after).is_err() {
-            let (kind, note) = wrong(automaton, to, limit, after);
+            let (kind, note) = wrong(automaton, to, limit, after.clone());
             let note = if kind == ErrorKind::Model { format!("Automaton::beyond {note}") } else { note };
             return Err(Error::new(kind, Place::new(limit, mode, None::<A::Edge>, &x)).noting(Some(note)));
         }
         at.instant = at.span.now;
         at.limits = Limits { count: at.limits.count + 1, last: Some(limit) };
         let jump = Jump { time: at.instant, j: at.jumps + 1, cause: Cause::Zeno, from: mode, before: x, to, after };
-        (at.mode, at.state, at.jumps) = (to, after, jump.j);
+        (at.mode, at.state, at.jumps) = (to, jump.after.clone(), jump.j);
         (at.contraction, at.recent, at.cascade) = (Contraction::new(), Recent::new(), Cascade::NONE);
         arc.memory.beyond();
         Ok(observer.jump(&jump).is_break().then_some(Stop::Observer))

@@ -56,6 +56,7 @@ mod table;
 mod ticks;
 mod time;
 mod trajectory;
+mod vector;
 mod zeno;
 
 pub use nalgebra;
@@ -99,3 +100,4 @@ pub use step::{Auto, Dop853, Rodas5P, Tsit5};
 pub use table::{JumpTable, JumpTableOf};
 pub use time::Time;
 pub use trajectory::{Arc, Trajectory, TrajectoryOf};
+pub use vector::Vector;

@@ -1,5 +1,7 @@
 //! A stretch of an arc on which the state is one polynomial in time.
 
+use std::array;
+
 use crate::poly::value_and_slope;
 use crate::state::State;
 use crate::time::Time;
@@ -27,7 +29,7 @@ pub(crate) fn horner_each<S: State, const K: usize>(coefficients: &[S], times: [
 #[inline(always)]
 fn summed<S: State, const K: usize>(coefficients: &[S], times: [f64; K]) -> [S; K] {
     let last = coefficients.len() - 1;
-    let mut sums = [coefficients[last]; K];
+    let mut sums: [S; K] = array::from_fn(|_| coefficients[last].clone());
     for c in coefficients[..last].iter().rev() {
         for (sum, s) in sums.iter_mut().zip(times) {
             *sum = c.with(|i| sum.get(i) * s + c.get(i));
@@ -52,13 +54,21 @@ pub(crate) const LONG: usize = 9;
 /// assert!((last.at(last.span()) - (-1.0_f64).exp()).abs() < 1e-9);
 /// # Ok::<(), saltus::Error>(())
 /// ```
-#[derive(Clone, Copy, Debug)]
+#[derive(Debug)]
 pub struct Piece<'a, S> {
     start: Time,
     span: f64,
     scale: f64,
     coefficients: &'a [S],
 }
+
+impl<S> Clone for Piece<'_, S> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<S> Copy for Piece<'_, S> {}
 
 impl<'a, S: State> Piece<'a, S> {
     pub(crate) fn new(start: Time, span: f64, scale: f64, coefficients: &'a [S]) -> Self {

@@ -141,7 +141,7 @@ impl<M: Copy, S: State> Sampler<M, S> {
         let tick = |row: &Sample<M, S>| ((row.t - start) / self.dt).round();
         let is_regular = |row: &Sample<M, S>| (tick(row).mul_add(self.dt, start) - row.t).abs() <= instant;
         let is_last = |k: usize| rows.get(k + 1).is_none_or(|next| tick(next) > tick(&rows[k]) || !is_regular(next));
-        let regular = (0..rows.len()).filter(|&k| is_regular(&rows[k]) && is_last(k)).map(|k| rows[k]);
+        let regular = (0..rows.len()).filter(|&k| is_regular(&rows[k]) && is_last(k)).map(|k| rows[k].clone());
         self.rows = regular.map(|row| Sample { t: tick(&row).mul_add(self.dt, start), ..row }).collect();
         self.end = None;
         self
@@ -149,7 +149,7 @@ impl<M: Copy, S: State> Sampler<M, S> {
 
     /// The rows in order.
     pub fn rows(&self) -> impl Iterator<Item = Sample<M, S>> {
-        self.rows.iter().copied().chain(self.end)
+        self.rows.iter().chain(&self.end).cloned()
     }
 
     fn full(&self) -> ControlFlow<()> {
@@ -191,7 +191,7 @@ impl<M: Copy, S: State> Sampler<M, S> {
     }
 
     pub(crate) fn take_jump(&mut self, t: f64, [from, to]: [(M, S); 2]) -> ControlFlow<()> {
-        self.begin(t, from.0, from.1);
+        self.begin(t, from.0, from.1.clone());
         // At once after another jump, or the start, the state before is the last row.
         if self.end.take().is_some() {
             self.rows.push(Sample { t, j: self.j, mode: from.0, state: from.1 });
@@ -208,7 +208,7 @@ impl<A: Automaton> Observer<A> for SamplerOf<A> {
         self.take_piece(mode, piece)
     }
     fn jump(&mut self, jump: &JumpOf<A>) -> ControlFlow<()> {
-        self.take_jump(jump.t(), [(jump.from, jump.before), (jump.to, jump.after)])
+        self.take_jump(jump.t(), [(jump.from, jump.before.clone()), (jump.to, jump.after.clone())])
     }
 }
 
@@ -285,7 +285,7 @@ impl<M: Copy, E, S: State> Trajectory<M, E, S> {
         let mut table = Sampler::every(dt);
         for (index, arc) in self.arcs().iter().enumerate() {
             if index == 0 {
-                table.begin(arc.start().seconds(), arc.mode(), *arc.state());
+                table.begin(arc.start().seconds(), arc.mode(), arc.state().clone());
             }
             for piece in self.pieces(index) {
                 if table.take_piece(arc.mode(), &piece).is_break() {
@@ -293,7 +293,9 @@ impl<M: Copy, E, S: State> Trajectory<M, E, S> {
                 }
             }
             if let Some(jump) = self.jumps().get(index)
-                && table.take_jump(jump.t(), [(jump.from, jump.before), (jump.to, jump.after)]).is_break()
+                && table
+                    .take_jump(jump.t(), [(jump.from, jump.before.clone()), (jump.to, jump.after.clone())])
+                    .is_break()
             {
                 return Err(SamplingError::Rows { dt });
             }

@@ -102,7 +102,7 @@ impl<A: Automaton> Observer<A> for Bounded<'_, A> {
         self.grow(by)
     }
     fn jump(&mut self, jump: &JumpOf<A>) -> ControlFlow<()> {
-        let by = self.trajectory.push_jump(*jump);
+        let by = self.trajectory.push_jump(jump.clone());
         self.grow(by)
     }
     fn inspection(&mut self, inspection: &InspectionOf<A>) {
@@ -284,7 +284,7 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
     /// [`Failed`], which holds the [`Error`] and the run up to it; `?` turns it into the [`Error`]
     /// where a function returns that.
     pub fn run(&self, mode: A::Mode, state: A::State, span: Range<f64>) -> Result<RunOf<A>, Box<FailedOf<A>>> {
-        let mut trajectory = Trajectory::starting(mode, state, Time::new(span.start));
+        let mut trajectory = Trajectory::starting(mode, state.clone(), Time::new(span.start));
         let mut course = match self.start(mode, state, span) {
             Ok(course) => course,
             Err(error) => return Err(Box::new(Failed { error, trajectory, stats: Stats::default() })),

@@ -6,10 +6,10 @@ use std::fmt::Debug;
 
 use nalgebra::SVector;
 
-/// The continuous state x of a hybrid automaton: a short list of real coordinates, passed by value.
+/// The continuous state x of a hybrid automaton: a list of real coordinates.
 ///
-/// Implemented for `f64`, `[f64; N]`, [`SVector<f64, N>`] and [`Coords`], whose dimension may
-/// differ from mode to mode; and, with the feature `derive`, by `#[derive(State)]` for a struct of
+/// Implemented for `f64`, `[f64; N]`, [`SVector<f64, N>`]; for [`Coords`], whose dimension may
+/// differ from mode to mode, and [`Vector`](crate::Vector), which has any; and, with the feature `derive`, by `#[derive(State)]` for a struct of
 /// these, whose fields then name its coordinates in flows, tables and errors.
 ///
 /// ```
@@ -20,7 +20,7 @@ use nalgebra::SVector;
 #[diagnostic::on_unimplemented(
     note = "with the feature `derive` of saltus, a struct of numbers is a state by `#[derive(State)]`"
 )]
-pub trait State: Copy + Debug {
+pub trait State: Clone + Debug {
     /// How many coordinates there are.
     fn len(&self) -> usize;
 
@@ -48,6 +48,12 @@ pub trait State: Copy + Debug {
     #[doc(hidden)]
     fn within(&self, i: usize) -> String {
         format!("[{i}]")
+    }
+
+    /// How many bytes it holds elsewhere, as coordinates on the heap; a recording counts them.
+    #[inline]
+    fn heap(&self) -> usize {
+        0
     }
 
     /// Whether there are no coordinates at all.

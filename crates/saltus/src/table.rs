@@ -93,7 +93,7 @@ impl<A: Automaton> Observer<A> for JumpTableOf<A> {
         false
     }
     fn jump(&mut self, jump: &JumpOf<A>) -> ControlFlow<()> {
-        self.jumps.push(*jump);
+        self.jumps.push(jump.clone());
         if self.jumps.len() < MOST_ROWS { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     }
 }

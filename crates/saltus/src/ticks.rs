@@ -75,7 +75,7 @@ impl<M: Copy + PartialEq + Debug> Ticks<M> {
         span: &Span,
     ) -> Result<Option<Due<M, A::Edge>>, Error> {
         let clocks = automaton.clocks(mode);
-        if clocks.is_empty() { Ok(None) } else { self.first(automaton, &clocks, mode, &{ *x }, span) }
+        if clocks.is_empty() { Ok(None) } else { self.first(automaton, &clocks, mode, &x.clone(), span) }
     }
 
     /// The tick is taken now.

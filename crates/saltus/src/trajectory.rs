@@ -162,18 +162,19 @@ impl<M: Copy + PartialEq, E: Copy + PartialEq, S: State> Trajectory<M, E, S> {
         self.pieces.push(Stored { start, span, scale, first, len });
         self.end = start.after(span);
         self.doubts.settle(self.end, |_| ());
-        size_of::<Stored>() + size_of_val(piece.coefficients())
+        size_of::<Stored>() + size_of_val(piece.coefficients()) + heap(piece.coefficients())
     }
 
     /// Records a jump and the arc that begins there; says how many bytes they take.
     #[inline]
     pub(crate) fn push_jump(&mut self, jump: Jump<M, E, S>) -> usize {
         self.end = jump.time;
-        let (mode, state, start, j) = (jump.to, jump.after, jump.time, jump.j);
+        let (mode, state, start, j) = (jump.to, jump.after.clone(), jump.time, jump.j);
         self.arcs.push(Arc { mode, start, state, j, first_piece: self.pieces.len() });
         self.doubts.end_arc(start, jump.edge(), |_, _| ());
+        let elsewhere = heap([&jump.before, &jump.after, &jump.after]); // the last is the arc's
         self.jumps.push(jump);
-        size_of::<Arc<M, S>>() + size_of::<Jump<M, E, S>>()
+        size_of::<Arc<M, S>>() + size_of::<Jump<M, E, S>>() + elsewhere
     }
 
     pub(crate) fn push_doubt(&mut self, doubt: &Inspection<M, E>) {
@@ -189,10 +190,13 @@ impl<M: Copy + PartialEq, E: Copy + PartialEq, S: State> Trajectory<M, E, S> {
     /// How much memory what is recorded takes.
     #[inline]
     pub(crate) fn bytes(&self) -> usize {
+        let of_jumps = heap(self.jumps.iter().flat_map(|jump| [&jump.before, &jump.after]));
+        let elsewhere = heap(self.arcs.iter().map(Arc::state)) + of_jumps + heap(&self.coefficients);
         self.arcs.len() * (size_of::<Arc<M, S>>() + size_of::<Jump<M, E, S>>())
             + self.pieces.len() * size_of::<Stored>()
             + self.coefficients.len() * size_of::<S>()
             + size_of_val(self.doubts.list())
+            + elsewhere
     }
 
     /// The run got no further than this.
@@ -254,7 +258,7 @@ impl<M: Copy, E, S: State> Trajectory<M, E, S> {
     pub fn before(&self, t: f64) -> Option<S> {
         let first = self.jumps.partition_point(|jump| jump.t() < t);
         match self.jumps.get(first) {
-            Some(jump) if jump.t() == t => Some(jump.before),
+            Some(jump) if jump.t() == t => Some(jump.before.clone()),
             _ => self.at(t),
         }
     }
@@ -276,12 +280,12 @@ impl<M: Copy, E, S: State> Trajectory<M, E, S> {
         // At its own time an arc starts from x⁺, though the double may lie a rounding after the
         // moment.
         if t == self.arcs[index].start.seconds() {
-            return self.arcs[index].state;
+            return self.arcs[index].state.clone();
         }
         let pieces = &self.pieces[self.piece_range(index)];
         let next = pieces.partition_point(|piece| piece.start.seconds() <= t);
         match next.checked_sub(1).and_then(|i| pieces.get(i)) {
-            None => self.arcs[index].state,
+            None => self.arcs[index].state.clone(),
             Some(stored) => {
                 let s = Time::new(t).since(stored.start).clamp(0.0, stored.span);
                 self.piece(stored).at(s)
@@ -301,13 +305,19 @@ impl<M: Copy, E, S: State> Trajectory<M, E, S> {
     }
 }
 
+/// How many bytes states hold on the heap.
+#[inline]
+fn heap<'s, S: State + 's>(states: impl IntoIterator<Item = &'s S>) -> usize {
+    states.into_iter().map(State::heap).sum()
+}
+
 impl<A: Automaton> Observer<A> for TrajectoryOf<A> {
     fn piece(&mut self, _: A::Mode, piece: &Piece<'_, A::State>) -> ControlFlow<()> {
         self.push_piece(piece);
         ControlFlow::Continue(())
     }
     fn jump(&mut self, jump: &JumpOf<A>) -> ControlFlow<()> {
-        self.push_jump(*jump);
+        self.push_jump(jump.clone());
         ControlFlow::Continue(())
     }
     fn inspection(&mut self, inspection: &InspectionOf<A>) {

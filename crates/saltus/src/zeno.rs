@@ -1,5 +1,7 @@
 //! Zeno: jumps accumulate where the times between them *and* what they change contract to nothing.
 
+use std::array;
+
 use crate::certainty::{FAR, ROUNDINGS, SMALL, TINY};
 use crate::state::State;
 use crate::time::resolution;
@@ -45,7 +47,7 @@ impl<S: State> States<S> {
     #[cold]
     #[inline(never)]
     fn from(after: &S) -> Self {
-        Self { after: [*after; STATES], count: 1, first: [0.0; LONGEST_CYCLE] }
+        Self { after: array::from_fn(|_| after.clone()), count: 1, first: [0.0; LONGEST_CYCLE] }
     }
 
     /// x⁺ at the instant `back` instants ago, 0 for the last one.
@@ -62,7 +64,7 @@ impl<S: State> States<S> {
                 self.first[cycle - 1] = self.first[cycle - 1].max(way);
             }
         }
-        self.after[self.count % STATES] = *after;
+        self.after[self.count % STATES] = after.clone();
         self.count += 1;
     }
 
@@ -70,7 +72,7 @@ impl<S: State> States<S> {
     #[cold]
     #[inline(never)]
     fn replace(&mut self, after: &S) {
-        self.after[(self.count - 1) % STATES] = *after;
+        self.after[(self.count - 1) % STATES] = after.clone();
     }
 
     /// Whether x⁺ moved by nothing in the last `cycle`, or by so much less than in the one before
@@ -170,7 +172,7 @@ impl<S: State> Contraction<S> {
                 let before = states.last(ahead.cycle);
                 x.with(|i| x.get(i) + ahead.cycles * moved(before.get(i), x.get(i)))
             }
-            _ => *x,
+            _ => x.clone(),
         }
     }
 }

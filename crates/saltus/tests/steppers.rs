@@ -305,7 +305,7 @@ impl Stepper for Heun {
         square(trial.stages)
     }
     fn dense<S: State>(&self, _: &mut impl FnMut(f64, &S) -> S, _: f64, x: &S, _: f64, trial: Trial<&S, &S>) -> [S; 2] {
-        [*x, x.with(|i| trial.end.get(i) - x.get(i))]
+        [x.clone(), x.with(|i| trial.end.get(i) - x.get(i))]
     }
 }
 

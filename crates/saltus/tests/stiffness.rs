@@ -19,7 +19,7 @@ struct Case<S> {
 /// By a stepper chosen by hand, which gives up after so many evaluations.
 fn by_hand<S: State>(case: &Case<S>, method: usize, tolerance: f64, most: u64) -> Option<RunOf<Hybrid<'static, S>>> {
     let simulation = Simulation::of(&case.model).stepper(methods()[method]).tolerance(tolerance).most_evaluations(most);
-    let run = simulation.run("run", case.start, 0.0..case.end).ok()?;
+    let run = simulation.run("run", case.start.clone(), 0.0..case.end).ok()?;
     (run.end.stop == Stop::Time).then_some(run)
 }
 
@@ -31,7 +31,7 @@ const NOTICED: f64 = 750.0;
 /// chosen by hand, beyond what it takes to notice.
 fn ratio<S: State>(case: &Case<S>, tolerance: f64) -> f64 {
     let auto = Simulation::of(&case.model).tolerance(tolerance).most_evaluations(3_000_000);
-    let auto = auto.run("run", case.start, 0.0..case.end).unwrap().end;
+    let auto = auto.run("run", case.start.clone(), 0.0..case.end).unwrap().end;
     assert_eq!(auto.stop, Stop::Time, "{}: {:?}", case.name, auto.stats);
     let most = 20 * auto.stats.flows;
     let runs = [0, 1, 2].map(|method| by_hand(case, method, tolerance, most));
@@ -127,7 +127,7 @@ fn pendulum() -> Case<[f64; 2]> {
 /// The evaluations that the default takes beyond those of the method that it uses, in parts of
 /// them; it changes no method.
 fn overhead<S: State>(case: &Case<S>, tolerance: f64) -> f64 {
-    let auto = Simulation::of(&case.model).tolerance(tolerance).run("run", case.start, 0.0..case.end).unwrap();
+    let auto = Simulation::of(&case.model).tolerance(tolerance).run("run", case.start.clone(), 0.0..case.end).unwrap();
     assert_eq!(auto.end.stats.stiff, 0, "{} at {tolerance:e}: {:?}", case.name, auto.end.stats);
     let same = by_hand(case, usize::from(tolerance < saltus::Auto::TIGHT), tolerance, u64::MAX).unwrap();
     assert_eq!(auto.end.state.len(), same.end.state.len());

@@ -34,6 +34,6 @@ pub fn quads(hybrid: &Hybrid<'_, Vector4<f64>>, x: Vector4<f64>) -> bool {
 
 fn runs<S: State>(hybrid: &Hybrid<'_, S>, x: S) -> bool {
     let simulation = Simulation::of(hybrid);
-    let recorded = simulation.run("", x, 0.0..1.0).is_ok();
+    let recorded = simulation.run("", x.clone(), 0.0..1.0).is_ok();
     recorded && simulation.drive("", x, 0.0..1.0, &mut ()).is_ok()
 }

@@ -266,7 +266,8 @@ impl<S: Vector> Model<S> {
         let times = |x: &S, by: f64| x.with(|i| by * rows[i].iter().zip(0..).map(|(a, j)| a * x.get(j)).sum::<f64>());
         let first = self.flow_of(mode, t, x);
         let second = times(&first, 0.5);
-        Some([*x, first, second, times(&second, 1.0 / 3.0)])
+        let third = times(&second, 1.0 / 3.0);
+        Some([x.clone(), first, second, third])
     }
 
     fn series(&self, mode: Mode, series: &mut Series<'_, S>) {
@@ -326,7 +327,7 @@ impl<S: Vector> Automaton for Model<S> {
             self.refused()?;
             return Ok((slide.mode(side), after));
         }
-        let after = self.edge(edge).reset.as_ref().map_or(*x, |reset| self.vector(reset, t, x));
+        let after = self.edge(edge).reset.as_ref().map_or_else(|| x.clone(), |reset| self.vector(reset, t, x));
         self.refused()?;
         Ok((edge.to, after))
     }
@@ -340,8 +341,8 @@ impl<S: Vector> Automaton for Model<S> {
 
     fn solution(&self, mode: Mode, t: f64, x: &S) -> Solution<Self> {
         if let Some(solution) = self.polynomial(mode, t, x) {
-            let [c0, c1, c2, c3] = solution;
-            let is_parabola = (0..c3.len()).all(|i| c3.get(i) == 0.0);
+            let is_parabola = (0..x.len()).all(|i| solution[3].get(i) == 0.0);
+            let [c0, c1, c2, _] = solution.clone();
             return Solution::Polynomial(if is_parabola { [c0, c1, c2].into() } else { solution.into() });
         }
         let of = self.mode(mode);
@@ -368,7 +369,7 @@ impl<S: Vector> Automaton for Model<S> {
 
     fn beyond(&self, limit: &Limit<'_, Self>) -> Option<(Mode, S)> {
         let (to, reset) = self.mode(limit.mode).beyond.as_ref()?;
-        Some((*to, reset.as_ref().map_or(*limit.x, |reset| self.vector(reset, limit.t, limit.x))))
+        Some((*to, reset.as_ref().map_or_else(|| limit.x.clone(), |reset| self.vector(reset, limit.t, limit.x))))
     }
 
     fn refusal(&self, _: Mode, _: Option<Edge>, _: f64, _: &S) -> Option<Refusal> {

@@ -204,7 +204,7 @@ pub(crate) fn record<S: Vector>(
     options: &Options,
 ) -> Result<(Box<dyn Recorded>, End), Failure> {
     let state = start::<S>(&course.state)?;
-    let mut trajectory = Trajectory::starting(course.mode, state, Time::new(course.span.start));
+    let mut trajectory = Trajectory::starting(course.mode, state.clone(), Time::new(course.span.start));
     let mut watch = Watch::new(options.most_bytes);
     let span = course.span.clone();
     let ended = options.of(model).drive(course.mode, state, span, &mut (&mut trajectory, &mut watch));

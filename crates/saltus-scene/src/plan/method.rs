@@ -86,12 +86,12 @@ impl Step for NoStepper {
         1.0
     }
     fn trial<S: State>(&self, _: &mut impl FnMut(f64, &S) -> S, _: f64, x: &S, slope: &S, _: f64) -> Trial<S, ()> {
-        Trial { end: x.with(|_| f64::NAN), slope: *slope, stages: () }
+        Trial { end: x.with(|_| f64::NAN), slope: slope.clone(), stages: () }
     }
     fn error<S: State>(&self, _: f64, _: Trial<&S, &()>, _: impl Fn(&S) -> f64) -> f64 {
         f64::NAN
     }
     fn dense<S: State>(&self, _: &mut impl FnMut(f64, &S) -> S, _: f64, x: &S, _: f64, _: Trial<&S, &()>) -> [S; 1] {
-        [*x]
+        [x.clone()]
     }
 }

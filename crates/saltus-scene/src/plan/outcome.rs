@@ -137,7 +137,7 @@ impl<A: Automaton, R: SceneView<A>> Observer<A> for OutcomeObserver<'_, A, R> {
                 self.tops = Some(Tops::default());
             }
         }
-        self.left = Some((jump.t(), jump.to, jump.after));
+        self.left = Some((jump.t(), jump.to, jump.after.clone()));
         ControlFlow::Continue(())
     }
 }

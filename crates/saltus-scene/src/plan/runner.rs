@@ -169,7 +169,7 @@ impl<A: Automaton, R: SceneView<A>> BoundModel<A, R> {
         until: f64,
         mut observer: &mut dyn Observer<A>,
     ) -> Result<EndingOf<A>, saltus::Error> {
-        simulation.drive(self.mode, self.state, 0.0..until, &mut observer)
+        simulation.drive(self.mode, self.state.clone(), 0.0..until, &mut observer)
     }
 
     /// Until when to run.
@@ -199,14 +199,19 @@ impl<A: Shared, R: SceneView<A>> Runner for BoundModel<A, R> {
         let until = self.until(options, &simulation, &mut asking)?;
         let run = match options.frames {
             None => {
-                let mut trajectory = Trajectory::starting(self.mode, self.state, Time::new(0.0));
+                let mut trajectory = Trajectory::starting(self.mode, self.state.clone(), Time::new(0.0));
                 let end = self.drive(&simulation, until, &mut (&mut trajectory, &mut asking))?;
                 trajectory.finish(end.time);
                 Run { trajectory, end }
             }
-            Some(rate) => {
-                saltus::frame_by_frame(&*self.automaton, self.mode, self.state, 0.0..until, rate, options.most_jumps)?
-            }
+            Some(rate) => saltus::frame_by_frame(
+                &*self.automaton,
+                self.mode,
+                self.state.clone(),
+                0.0..until,
+                rate,
+                options.most_jumps,
+            )?,
         };
         if asking.is_over {
             return Err(RunError::ended());
@@ -228,11 +233,11 @@ impl<A: Shared, R: SceneView<A>> Runner for BoundModel<A, R> {
         let rest = (end == End::Time && self.view.rests(ending.mode, &ending.state)).then_some(last);
         let until = options.shown(end, ending.time.seconds(), last, rest)?;
         let state = if until < ending.time.seconds() {
-            let (t, mode, state) = observer.left.unwrap_or((0.0, self.mode, self.state));
+            let (t, mode, state) = observer.left.take().unwrap_or_else(|| (0.0, self.mode, self.state.clone()));
             let mut nothing: &mut dyn Observer<A> = &mut ();
             simulation.drive(mode, state, t..until, &mut nothing)?.state
         } else {
-            ending.state
+            ending.state.clone()
         };
         Ok(observer.outcome(&ending, end, until, &state, rest))
     }

@@ -36,7 +36,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let at = |s: f64| formula(automaton, mode, t, x, s);
         let remaining = clock.remaining();
         let search = |this: &mut Self, edge, limit, start| {
-            let natural = natural(&[*x, this.flow(mode, t, x)]);
+            let natural = natural(&[x.clone(), this.flow(mode, t, x)]);
             this.fall_in_windows(edge, now, natural, at, limit, start).map(|searched| (searched, false))
         };
         let first = self.first_on_solution(mode, x, clock, at, search, observer)?;
@@ -83,7 +83,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if !observer.wants_pieces() {
             return (ControlFlow::Continue(()), span);
         }
-        let natural = natural(&[*x, self.automaton.flow(mode, now.seconds(), x)]);
+        let natural = natural(&[x.clone(), self.automaton.flow(mode, now.seconds(), x)]);
         // A solution that no polynomial follows over so short a piece is followed by none.
         let shortest = TINY * if natural > 0.0 { span.min(natural) } else { span };
         let mut pieces = 0;
@@ -172,13 +172,14 @@ impl<S: State> Fit<S> {
 /// The powers of u of the interpolant of degree eight on `0..=1`.
 fn fitted<S: State>(at: impl Fn(f64) -> S) -> [S; 9] {
     let values = chebyshev::NODES.map(|x| at(0.5 + 0.5 * x));
-    let mut powers = values;
+    let mut powers = values.clone();
     for i in 0..values[0].len() {
         let column = chebyshev::powers(&values.each_ref().map(|value| value.get(i)));
         for (power, value) in powers.iter_mut().zip(column) {
             *power = power.with(|k| if k == i { value } else { power.get(k) });
         }
     }
-    powers[0] = values[0];
+    let [start, ..] = values;
+    powers[0] = start;
     powers
 }

@@ -299,14 +299,6 @@ pub(super) struct OnStep<A: Automaton> {
     pub(super) slope: Option<f64>,
 }
 
-impl<A: Automaton> Clone for OnStep<A> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<A: Automaton> Copy for OnStep<A> {}
-
 impl<A: Automaton> OnStep<A> {
     /// The state after a time `s`, as the search computes it.
     #[inline]
@@ -348,7 +340,7 @@ fn innermost<S: State>(mut guard: impl FnMut(&S) -> f64, nearest: &S, inner: &S)
             return (mixed, g);
         }
     }
-    (*inner, guard(inner))
+    (inner.clone(), guard(inner))
 }
 
 /// Keeps the earlier of the crossing `found` on a step and a `further` one; of two that time cannot

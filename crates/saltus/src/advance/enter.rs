@@ -36,14 +36,14 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         self.memory.walls.clear();
         let edges = self.automaton.edges(mode);
         if let Some(flaw) = edges.flaw() {
-            return Err(Error::new(ErrorKind::Model, Place::new(t, mode, None::<A::Edge>, &{ *x })).noting(Some(flaw)));
+            return Err(Error::new(ErrorKind::Model, Place::new(t, mode, None::<A::Edge>, x)).noting(Some(flaw)));
         }
         for edge in edges.iter() {
             self.memory.stats.guards += 1;
             let g = self.guard(edge, t, x);
             let spent = self.memory.spent_as(edge);
             if spent.is_some_and(|spent| g.abs() <= spent.slack) {
-                if self.memory.idle.is_empty() || !self.is_driven(mode, edge, t, &{ *x }, g) {
+                if self.memory.idle.is_empty() || !self.is_driven(mode, edge, t, &x.clone(), g) {
                     continue;
                 }
             } else if spent.is_none() && g > 0.0 {
@@ -53,7 +53,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 }
                 continue;
             }
-            let x = &{ *x };
+            let x = &x.clone();
             if self.is_entered(mode, edge, t, x, g, &mut zero)? {
                 let first = self.first_of(mode, t, x, zero, edge);
                 if first != edge {
@@ -171,7 +171,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     #[inline]
     pub(crate) fn landed(&mut self, edge: A::Edge, before: &A::State, (to, t, after): (A::Mode, f64, &A::State)) {
         if mem::take(&mut self.memory.leapt) {
-            let (before, after) = (*before, *after); // else both would be kept in memory
+            let (before, after) = (before.clone(), after.clone()); // else both would be kept in memory
             self.has_leapt(edge, &before, (to, t, &after));
         }
     }

@@ -48,7 +48,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
         let close = match &first {
             Some(first) => {
-                self.memory.slope = c.get(1).copied();
+                self.memory.slope = c.get(1).cloned();
                 self.close_on_solution(first, now, at, remaining)
             }
             None => Close { span: remaining, time: clock.end, state: end_of(c, remaining) },
@@ -184,5 +184,5 @@ pub(super) fn natural<S: State>(c: &[S]) -> f64 {
 
 /// The state at the end of a piece that may last for ever.
 fn end_of<S: State>(c: &[S], span: f64) -> S {
-    if span.is_finite() || c.len() > 1 { horner(c, span) } else { c[0] }
+    if span.is_finite() || c.len() > 1 { horner(c, span) } else { c[0].clone() }
 }

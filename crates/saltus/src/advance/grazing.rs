@@ -176,7 +176,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// The error estimate is that of a step's end, to the order below the method's own; within the
     /// step and after a few of them more has gathered (tests/grazing.rs, `the_error_of_a_step`).
     fn error_of(&mut self, edge: A::Edge, (step, range): (Step<'_, A::State>, Range), s: f64, g: f64) -> f64 {
-        let (tolerance, start, end) = (self.options.tolerance, step.c[0], step.at(range.limit));
+        let (tolerance, start, end) = (self.options.tolerance, &step.c[0], step.at(range.limit));
         let allowed = |i| tolerance.allowed(start.get(i), end.get(i));
         ROUNDINGS * self.moved(edge, step.time(s), &step.at(s), g, allowed)
     }

@@ -169,7 +169,7 @@ impl<E: Copy + PartialEq, S: State> Memory<E, S> {
     #[inline]
     pub(super) fn went(&mut self, x: &S, duration: f64) {
         let alike = |y: &S| y.len() == x.len();
-        let (largest, slope) = (self.largest.filter(alike), self.slope.take().filter(alike));
+        let (largest, slope) = (self.largest.take().filter(alike), self.slope.take().filter(alike));
         self.largest = Some(x.with(|i| {
             let here = x.get(i).abs();
             let before = largest.as_ref().map_or(0.0, |largest| if here == 0.0 { 0.0 } else { largest.get(i) });

@@ -105,12 +105,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         duration: Option<f64>,
     ) {
         if duration.is_some() && !self.memory.idle.is_empty() {
-            self.forget_risen(mode, t, &{ *before });
+            self.forget_risen(mode, t, &before.clone());
         }
         if let Some(last) = self.memory.spent.filter(|last| last.edge != edge)
             && duration.is_none_or(|s| self.memory.is_short(s))
         {
-            let (x, before) = (*x, *before);
+            let (x, before) = (x.clone(), before.clone());
             self.falls_on(mode, last, (&x, began), duration.map(|_| (&before, t)));
         }
         if let Some(duration) = duration {
@@ -210,7 +210,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let smooth = self.automaton.stops(mode).is_empty();
         self.smooth = Smooth::ALWAYS;
         if !smooth {
-            self.smooth_from(mode, now, &{ *x })?;
+            self.smooth_from(mode, now, &x.clone())?;
         }
         if let Some(edge) = self.enter(mode, x, now, only)? {
             return Ok(Begun::Crossing(edge));
@@ -246,9 +246,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 self.memory.before = None;
                 self.closed(mode, x, formula, clock, observer)
             }
-            Solution::Series(flow) => self.by_series(mode, *x, flow, clock.in_numbers(), observer),
+            Solution::Series(flow) => self.by_series(mode, x.clone(), flow, clock.in_numbers(), observer),
             // Nor is an exact solution cut in stops.
-            _ => self.stepped(mode, *x, clock.in_numbers(), true, observer),
+            _ => self.stepped(mode, x.clone(), clock.in_numbers(), true, observer),
         };
         let end = end?;
         self.stayed_inside(mode, x, now, &end, observer)?;

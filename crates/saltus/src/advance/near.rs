@@ -7,7 +7,7 @@ use crate::state::State;
 
 /// A state on a dense output after a time, and its slope there: all that counts within rounding of
 /// it.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub(super) struct Near<S> {
     pub(super) s: f64,
     pub(super) state: S,
@@ -18,7 +18,7 @@ impl<S: State> Near<S> {
     #[inline(never)] // once for each kind of state, not for each model and stepper
     pub(super) fn around(c: &[S], scale: f64, s: f64) -> Self {
         let (u, per_second) = (s / scale, 1.0 / scale);
-        let mut slope = c[0];
+        let mut slope = c[0].clone();
         let state = c[0].with(|i| {
             let (value, rate) = value_and_slope(c, |c| c.get(i), u);
             slope = slope.with(|j| if i == j { rate * per_second } else { slope.get(j) });
@@ -46,6 +46,6 @@ impl<S: State> Near<S> {
     /// The same around another time within rounding.
     #[inline]
     pub(super) fn moved(&self, c: &[S], scale: f64, s: f64) -> Self {
-        Self { s, state: self.at(c, scale, s), slope: self.slope }
+        Self { s, state: self.at(c, scale, s), slope: self.slope.clone() }
     }
 }

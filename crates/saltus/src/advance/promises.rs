@@ -28,7 +28,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             return Ok(());
         }
         // Copies: what others refer to is kept in memory, and waited for.
-        let (x, &(ArcEnd::Crossing { time, before: y, .. } | ArcEnd::Stop { time, state: y, .. })) = (*x, end);
+        let (ArcEnd::Crossing { time, before: y, .. } | ArcEnd::Stop { time, state: y, .. }) = end;
+        let (x, y) = (x.clone(), y.clone());
         self.promised(mode, [began.seconds(), time.seconds()], [&x, &y])
     }
 

@@ -59,7 +59,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let began = clock.now;
         let unguarded = self.automaton.edges(mode).is_empty();
         let mut first = true;
-        let mut c = [x; MOST_COEFFICIENTS];
+        let mut c: [A::State; MOST_COEFFICIENTS] = std::array::from_fn(|_| x.clone());
         self.tape.anew(None);
         loop {
             let remaining = clock.remaining();

@@ -14,12 +14,19 @@ use super::Smooth;
 const LARGER: i64 = 511;
 
 /// A step's start, dense output and size.
-#[derive(Clone, Copy)]
 pub(super) struct Step<'c, S> {
     pub(super) now: Time,
     pub(super) c: &'c [S],
     pub(super) scale: f64,
 }
+
+impl<S> Clone for Step<'_, S> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<S> Copy for Step<'_, S> {}
 
 impl<S: State> Step<'_, S> {
     /// The time `s` after its start.

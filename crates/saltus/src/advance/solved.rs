@@ -130,13 +130,13 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         at: impl Fn(f64) -> A::State,
         remaining: f64,
     ) -> Close<A::State> {
-        let &First { edge, crossing, by_formula, state } = first;
+        let First { edge, crossing, by_formula, ref state } = *first;
         // Not where another edge's crossing, just before it, has moved the inner end.
         let arrived = crossing.inside == crossing.root && crossing.root < remaining;
-        match state.filter(|_| arrived) {
+        match state.as_ref().filter(|_| arrived) {
             Some(state) => {
                 self.arrived();
-                Close { span: crossing.root, time: now.after(crossing.root), state }
+                Close { span: crossing.root, time: now.after(crossing.root), state: state.clone() }
             }
             None => self.close((edge, crossing), now, at, remaining, by_formula),
         }

@@ -74,7 +74,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             }
             let to_stop = self.smooth.ahead(clock.now);
             let Some((h, trial)) = self.accepted(mode, clock.now, (&x, &slope), remaining.min(to_stop)) else {
-                return self.too_short(mode, clock.now, (&{ x }, &{ slope }));
+                return self.too_short(mode, clock.now, (&x.clone(), &slope.clone()));
             };
             let Arrival { time: arrival, at_stop } = self.arrival(&clock, h, (remaining, to_stop));
             let clear = unguarded || !first && self.clear(mode, clock.now, &x, h, &trial, observer);
@@ -85,11 +85,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                     continue;
                 }
             }
-            let dense = self.dense(mode, clock.now.seconds(), &{ x }, h, &{ trial });
+            let dense = self.dense(mode, clock.now.seconds(), &x.clone(), h, &trial.clone());
             let step = Step { now: clock.now, c: dense.as_ref(), scale: h };
             if first
                 && h > f64::EPSILON * clock.now.seconds().abs()
-                && self.contradicted(mode, &{ x }, &{ slope }, step)
+                && self.contradicted(mode, &x.clone(), &slope.clone(), step)
             {
                 self.memory.stats.steps -= 1;
                 self.memory.stats.rejected += 1;
@@ -97,14 +97,14 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 continue;
             }
             if first {
-                self.find_staying(mode, step, &{ slope });
+                self.find_staying(mode, step, &slope.clone());
             }
             let limit = if h < remaining { h } else { h + clock.grace() };
             let range = Range { limit, first, roughly: true };
             let found = if clear {
                 None
             } else if limit > 2.0 * h {
-                self.on_line(mode, (&{ slope }, step), range, observer)?
+                self.on_line(mode, (&slope.clone(), step), range, observer)?
             } else {
                 self.first_crossing(mode, step, range, Some(observer))?
             };
@@ -117,22 +117,22 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             if let Some(rough) = found {
                 // The rest of the step was not used, and says nothing of the next.
                 self.memory.cut(h.max(NEXT_ARC * (clock.now.since(began) + rough.crossing.root)));
-                return self.closed_in(mode, (&{ x }, &{ slope }, step), (&rough, range), remaining, observer);
+                return self.closed_in(mode, (&x.clone(), &slope.clone(), step), (&rough, range), remaining, observer);
             }
             // Where guards were looked at, the state goes on from where they were asked last.
-            let state = if clear { trial.end } else { horner(step.c, 1.0) };
+            let state = if clear { trial.end.clone() } else { horner(step.c, 1.0) };
             if observer.piece(mode, &Piece::new(clock.now, h, h, step.c)).is_break() {
                 return Ok(ArcEnd::Stop { stop: Stop::Observer, time: arrival, state });
             }
             (clock.now, x, first, slope) = (arrival, state, false, trial.slope);
             if at_stop {
-                if let Some(edge) = self.pass_stop(mode, clock.now, &{ x })? {
+                if let Some(edge) = self.pass_stop(mode, clock.now, &x.clone())? {
                     return Ok(ArcEnd::Crossing { edge, time: clock.now, before: x });
                 }
-                slope = self.slope(mode, clock.now, &{ x })?;
+                slope = self.slope(mode, clock.now, &x.clone())?;
             }
             if !self.memory.walls.is_empty() {
-                self.keep_staying(mode, clock.now, &{ x }, h);
+                self.keep_staying(mode, clock.now, &x.clone(), h);
             }
         }
     }
@@ -148,7 +148,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         range: Range,
         observer: &mut impl Observer<A>,
     ) -> Result<Option<OnStep<A>>, Error> {
-        let line = [step.c[0], slope.with(|i| step.scale * slope.get(i))];
+        let line = [step.c[0].clone(), slope.with(|i| step.scale * slope.get(i))];
         self.first_crossing(mode, Step { c: &line, ..step }, range, Some(observer))
     }
 
@@ -195,7 +195,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     ) -> ArcEnd<A> {
         self.memory.slope = c.get(1).map(|c| c.with(|i| c.get(i) / scale));
         let close = self.close((found.edge, found.crossing), now, |s| found.at(c, scale, s), remaining, false);
-        self.memory.before = slope.map(|slope| (close.state, slope));
+        self.memory.before = slope.map(|slope| (close.state.clone(), slope));
         let told = if close.span > 0.0 {
             observer.piece(mode, &Piece::new(now, close.span, scale, c))
         } else {
@@ -224,8 +224,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 first_step(
                     |t, x| self.flow(mode, t, x),
                     now.seconds(),
-                    &{ *x },
-                    &{ *slope },
+                    &x.clone(),
+                    &slope.clone(),
                     &tolerance,
                     order,
                     longest,

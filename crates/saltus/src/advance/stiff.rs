@@ -86,7 +86,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if self.memory.gait.left == 0 {
             let change = x.with(|i| trial.slope.get(i) - slope.get(i));
             // Copies: what others refer to is kept in memory.
-            let (end, slope) = (trial.end, trial.slope);
+            let (end, slope) = (trial.end.clone(), trial.slope.clone());
             self.look_at_stiffness(mode, t + h, (&end, &slope), change, h / limit);
         }
     }
@@ -138,7 +138,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     fn damping(&mut self, mode: A::Mode, t: f64, (x, slope): (&A::State, &A::State), v: A::State) -> f64 {
         let tolerance = self.options.tolerance;
         let size = |v: &A::State| tolerance.norm(v, x, x);
-        let (mut v, mut largest) = (if size(&v) > 0.0 { v } else { *slope }, 0.0);
+        let (mut v, mut largest) = (if size(&v) > 0.0 { v } else { slope.clone() }, 0.0);
         for _ in 0..PRODUCTS {
             let length = size(&v);
             if !(length > 0.0 && length.is_finite()) {

@@ -277,7 +277,7 @@ struct Placed<'a, S> {
 impl<S: State> Curve<'_, S> {
     fn at(&self, u: f64) -> S {
         let next = self.pieces.partition_point(|piece| piece.from <= u);
-        next.checked_sub(1).and_then(|i| self.pieces.get(i)).map_or(self.state, |piece| piece.at(u))
+        next.checked_sub(1).and_then(|i| self.pieces.get(i)).map_or_else(|| self.state.clone(), |piece| piece.at(u))
     }
 }
 
@@ -319,7 +319,7 @@ where
         for piece in trajectory.pieces(index) {
             pieces.push(Placed { from: piece.start().since(arc.start()), piece });
         }
-        Curve { start: arc.start(), state: *arc.state(), duration: end.since(arc.start()).max(0.0), pieces }
+        Curve { start: arc.start(), state: arc.state().clone(), duration: end.since(arc.start()).max(0.0), pieces }
     };
     arcs.iter().zip(ends).enumerate().map(curve).collect()
 }

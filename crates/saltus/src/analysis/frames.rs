@@ -71,7 +71,7 @@ pub fn frame_by_frame<A: Automaton>(
         if h <= 0.0 {
             break;
         }
-        let (mode, x) = (run.end.mode, run.end.state);
+        let (mode, x) = (run.end.mode, run.end.state.clone());
         if let Some(flaw) = automaton.edges(mode).flaw() {
             return Err(Error::new(ErrorKind::Model, place(now.seconds(), mode, &x)).noting(Some(flaw)));
         }
@@ -110,7 +110,7 @@ pub fn frame_by_frame<A: Automaton>(
 /// A run at its start.
 fn begun<A: Automaton>(mode: A::Mode, state: A::State, time: Time) -> RunOf<A> {
     let (stop, stats, limits) = (Stop::Time, Stats::default(), Limits::default());
-    let trajectory = Trajectory::starting(mode, state, time);
+    let trajectory = Trajectory::starting(mode, state.clone(), time);
     Run { trajectory, end: Ending { stop, stats, time, jumps: 0, mode, state, limits } }
 }
 
@@ -142,13 +142,13 @@ fn jumps<A: Automaton>(
 ) -> Result<Stop<A::Edge>, Error> {
     let t = now.seconds();
     for _ in 0..MOST_AT_ONCE {
-        let (mode, x) = (run.end.mode, run.end.state);
+        let (mode, x) = (run.end.mode, &run.end.state);
         let mut crossed = None;
         for (edge, &may) in automaton.edges(mode).iter().zip(&*may) {
             run.end.stats.guards += 1;
-            let g = automaton.guard(edge, t, &x);
+            let g = automaton.guard(edge, t, x);
             if g.is_nan() {
-                return Err(guard_undefined(automaton, mode, edge, t, &x));
+                return Err(guard_undefined(automaton, mode, edge, t, x));
             }
             if g < 0.0 && may {
                 crossed = Some(edge);
@@ -168,7 +168,7 @@ fn jumps<A: Automaton>(
 
 /// Takes an edge.
 fn jump<A: Automaton>(automaton: &A, edge: A::Edge, now: Time, run: &mut RunOf<A>) -> Result<Stop<A::Edge>, Error> {
-    let (mode, x, t) = (run.end.mode, run.end.state, now.seconds());
+    let (mode, x, t) = (run.end.mode, run.end.state.clone(), now.seconds());
     let place = || Place::new(t, mode, Some(edge), &x);
     let (to, after) = automaton.reset(mode, edge, t, &x).map_err(|refusal| refusal.at("reset", place()))?;
     if !after.is_finite() {
@@ -176,7 +176,7 @@ fn jump<A: Automaton>(automaton: &A, edge: A::Edge, now: Time, run: &mut RunOf<A
     }
     run.end.stats.jumps += 1;
     let (j, cause) = (run.end.stats.jumps, Cause::Edge(edge));
-    run.trajectory.push_jump(Jump { time: now, j, cause, from: mode, before: x, to, after });
+    run.trajectory.push_jump(Jump { time: now, j, cause, from: mode, before: x, to, after: after.clone() });
     (run.end.mode, run.end.state) = (to, after);
     Ok(if automaton.about(edge).terminal { Stop::Terminal { edge } } else { Stop::Time })
 }
@@ -189,13 +189,14 @@ fn kutta<A: Automaton>(automaton: &A, mode: A::Mode, t: f64, x: &A::State, h: f6
     let c = automaton.flow(mode, t + 0.5 * h, &ahead(&b, 0.5 * h));
     let d = automaton.flow(mode, t + h, &ahead(&c, h));
     let mean = |i: usize| (a.get(i) + 2.0 * (b.get(i) + c.get(i)) + d.get(i)) / 6.0;
-    (a, x.with(|i| x.get(i) + h * mean(i)))
+    let end = x.with(|i| x.get(i) + h * mean(i));
+    (a, end)
 }
 
 /// The parabola through both ends of a frame with the slope at its first: nobody sees what lies
 /// between frames.
 fn between<S: State>(x: &S, slope: &S, end: &S, h: f64) -> [S; 3] {
-    [*x, x.with(|i| h * slope.get(i)), x.with(|i| end.get(i) - x.get(i) - h * slope.get(i))]
+    [x.clone(), x.with(|i| h * slope.get(i)), x.with(|i| end.get(i) - x.get(i) - h * slope.get(i))]
 }
 
 #[cfg(test)]

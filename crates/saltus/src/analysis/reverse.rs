@@ -168,8 +168,9 @@ impl<'a, A: Invertible> Reversed<'a, A> {
     #[must_use]
     pub fn forwards(&self, backwards: &TrajectoryOf<Self>) -> TrajectoryOf<A> {
         let (arcs, jumps) = (backwards.arcs(), backwards.jumps());
-        let last = arcs[jumps.len()]; // there is one more arc than jumps
-        let end = backwards.pieces(jumps.len()).last().map_or(*last.state(), |piece| piece.at(piece.span()));
+        let last = &arcs[jumps.len()]; // there is one more arc than jumps
+        let end =
+            backwards.pieces(jumps.len()).last().map_or_else(|| last.state().clone(), |piece| piece.at(piece.span()));
         let mut trajectory = Trajectory::starting(last.mode(), end, negative(backwards.end()));
         for index in (0..arcs.len()).rev() {
             let pieces: Vec<_> = backwards.pieces(index).collect();
@@ -178,8 +179,8 @@ impl<'a, A: Invertible> Reversed<'a, A> {
                 trajectory.push_piece(&Piece::new(negative(next), piece.span(), piece.scale(), &turned(piece)));
                 next = piece.start();
             }
-            if let Some(jump) = index.checked_sub(1).map(|before| jumps[before]) {
-                let Jump { time, cause, from, before, to, after, .. } = jump;
+            if let Some(jump) = index.checked_sub(1).map(|before| &jumps[before]) {
+                let Jump { time, cause, from, before, to, after, .. } = jump.clone();
                 let (time, j) = (negative(time), jumps.len() - index + 1);
                 trajectory.push_jump(Jump { time, j, cause, from: to, before: after, to: from, after: before });
             }
@@ -249,7 +250,7 @@ impl<A: Invertible> Automaton for Reversed<'_, A> {
 
     fn solution(&self, mode: A::Mode, s: f64, x: &A::State) -> Solution<Self> {
         let Solution::Polynomial(polynomial) = self.automaton.solution(mode, -s, x) else { return Solution::Steps };
-        Solution::Polynomial(polynomial.map(|k, c| if k % 2 == 1 { c.with(|i| -c.get(i)) } else { *c }))
+        Solution::Polynomial(polynomial.map(|k, c| if k % 2 == 1 { c.with(|i| -c.get(i)) } else { c.clone() }))
     }
 
     /// Of a flow: that of an image is not asked for.

@@ -121,9 +121,9 @@ impl<A: Automaton, Q: Fn(&RunOf<A>) -> Vec<f64>> WorkPrecision<A, Q> {
         question: Q,
     ) -> Result<Self, Error> {
         let (mode, state, span) = &start;
-        let reference = question(&simulation.run(*mode, *state, span.clone())?);
+        let reference = question(&simulation.run(*mode, state.clone(), span.clone())?);
         let looser = simulation.tolerance(LOOSER * simulation.relative_tolerance());
-        let doubt = farthest(&question(&looser.run(*mode, *state, span.clone())?), &reference);
+        let doubt = farthest(&question(&looser.run(*mode, state.clone(), span.clone())?), &reference);
         Ok(Self { start, question, reference, doubt, points: Vec::new() })
     }
 
@@ -137,9 +137,9 @@ impl<A: Automaton, Q: Fn(&RunOf<A>) -> Vec<f64>> WorkPrecision<A, Q> {
         simulation: &Simulation<'_, A, M>,
     ) -> Result<&WorkPoint, Error> {
         let (mode, state, span) = &self.start;
-        let run = simulation.run(*mode, *state, span.clone())?;
+        let run = simulation.run(*mode, state.clone(), span.clone())?;
         let error = farthest(&(self.question)(&run), &self.reference);
-        let timing = Timing::of(|| simulation.drive(*mode, *state, span.clone(), &mut ()));
+        let timing = Timing::of(|| simulation.drive(*mode, state.clone(), span.clone(), &mut ()));
         let tolerance = simulation.relative_tolerance();
         self.points.push(WorkPoint { method: method.to_owned(), tolerance, error, stats: run.end.stats, timing });
         Ok(&self.points[self.points.len() - 1])

@@ -214,12 +214,11 @@ impl<S: state::State> Polynomial<S> {
     }
 }
 
-impl<S: Copy, const N: usize> From<[S; N]> for Polynomial<S> {
+impl<S: Clone, const N: usize> From<[S; N]> for Polynomial<S> {
     #[inline]
     fn from(list: [S; N]) -> Self {
         const { assert!(1 <= N && N <= 4, "a polynomial has one to four coefficients") };
-        let mut coefficients = [list[0]; 4];
-        coefficients[..N].copy_from_slice(&list);
-        Self { coefficients, len: N }
+        // Behind the last one anything may stand.
+        Self { coefficients: std::array::from_fn(|k| list[if k < N { k } else { 0 }].clone()), len: N }
     }
 }

@@ -333,7 +333,7 @@ impl<T: TwoSided> Filippov<T> {
         let total: f64 = (0..x.len()).map(|i| n.get(i) * weight(i)).sum();
         let missing = target - self.system.surface(t, x);
         if missing == 0.0 {
-            return *x;
+            return x.clone();
         }
         let by = if total > 0.0 {
             x.with(|i| missing * (weight(i) / total))
@@ -344,7 +344,7 @@ impl<T: TwoSided> Filippov<T> {
         // What cancels but for rounding is zero: what is left of it says nothing of its size.
         let cancels = |i: usize| (x.get(i) + by.get(i)).abs() <= FEW * f64::EPSILON * x.get(i).abs();
         let y = x.with(|i| if cancels(i) { 0.0 } else { x.get(i) + by.get(i) });
-        if y.is_finite() { y } else { *x }
+        if y.is_finite() { y } else { x.clone() }
     }
 
     /// The surface where it leaps in a stop at the same instant as `t`: when that is, and h behind
@@ -406,14 +406,14 @@ impl<T: TwoSided> Automaton for Filippov<T> {
         // A surface that leaps leaves the state where it is.
         let leap = self.leap(t, x).map_or(0.0, |(_, h)| h);
         Ok(match edge {
-            Passage::FromAbove | Passage::LeaveBelow if leap < 0.0 => (Side::Below, *x),
-            Passage::FromBelow | Passage::LeaveAbove if leap > 0.0 => (Side::Above, *x),
-            Passage::FromAbove if self.system.hold_below(t, x) < 0.0 => (Side::Below, *x),
-            Passage::FromBelow if self.system.hold_above(t, x) < 0.0 => (Side::Above, *x),
+            Passage::FromAbove | Passage::LeaveBelow if leap < 0.0 => (Side::Below, x.clone()),
+            Passage::FromBelow | Passage::LeaveAbove if leap > 0.0 => (Side::Above, x.clone()),
+            Passage::FromAbove if self.system.hold_below(t, x) < 0.0 => (Side::Below, x.clone()),
+            Passage::FromBelow if self.system.hold_above(t, x) < 0.0 => (Side::Above, x.clone()),
             Passage::FromAbove | Passage::FromBelow => (Side::Sliding, self.onto(t, x)),
             Passage::LeaveAbove => (Side::Above, self.onto(t, x)),
             Passage::LeaveBelow => (Side::Below, self.onto(t, x)),
-            Passage::Undecided | Passage::Unpushed => (Side::Sliding, *x),
+            Passage::Undecided | Passage::Unpushed => (Side::Sliding, x.clone()),
         })
     }
 

@@ -35,8 +35,8 @@ type Exact<'a, S> = Box<dyn Fn(f64, &S) -> Polynomial<S> + Send + Sync + 'a>;
 /// let thermostat = Hybrid::new()
 ///     .mode("heating", |_t, x: &f64| 30.0 - x)
 ///     .mode("cooling", |_t, x| 10.0 - x)
-///     .edge("heating", "cooling", |_t, x| 22.0 - x, |_t, x| *x)
-///     .edge("cooling", "heating", |_t, x| x - 20.0, |_t, x| *x);
+///     .edge("heating", "cooling", |_t, x| 22.0 - x, |_t, x| x.clone())
+///     .edge("cooling", "heating", |_t, x| x - 20.0, |_t, x| x.clone());
 /// let run = Simulation::of(&thermostat).run("heating", 20.0, 0.0..2.0)?;
 ///
 /// let first = &run.trajectory.jumps()[0];
@@ -60,7 +60,7 @@ type Exact<'a, S> = Box<dyn Fn(f64, &S) -> Polynomial<S> + Send + Sync + 'a>;
 /// let lamp = Hybrid::new()
 ///     .mode("dark", |_t, _x: &f64| 1.0)
 ///     .mode("lit", |_t, _x| 0.0)
-///     .edge("dark", "lid", |_t, x| 1.0 - x, |_t, x| *x);
+///     .edge("dark", "lid", |_t, x| 1.0 - x, |_t, x| x.clone());
 /// let error = Simulation::of(&lamp).run("dark", 0.0, 0.0..3.0).unwrap_err().error;
 /// assert_eq!(error.kind(), ErrorKind::Model);
 /// assert!(error.to_string().contains("did you mean \"lit\"?"));
@@ -174,7 +174,7 @@ impl<'a, S: State> Hybrid<'a, S> {
     /// let ball = Hybrid::new()
     ///     .mode("flight", |_t, x: &[f64; 2]| [x[1], k * x[1] * x[1] - g])
     ///     .series("flight", |_t, [_, v]| [v, k * v * v - g])
-    ///     .edge("flight", "flight", |_t, x| x[0], |_t, x| *x)
+    ///     .edge("flight", "flight", |_t, x| x[0], |_t, x| x.clone())
     ///     .affine();
     /// let run = Simulation::of(&ball).tolerance(1e-13).most_jumps(1).run("flight", [h, 0.0], 0.0..9.0)?;
     /// assert!((run.end.state[1] + (g / k * (1.0 - (-2.0 * k * h).exp())).sqrt()).abs() < 1e-14);
@@ -256,7 +256,7 @@ impl<'a, S: State> Hybrid<'a, S> {
         to: impl Into<Cow<'static, str>>,
         guard: impl Fn(f64, &S) -> f64 + Send + Sync + 'a,
     ) -> Self {
-        self.edge(from, to, guard, |_t, x| *x)
+        self.edge(from, to, guard, |_t, x| x.clone())
     }
 
     /// Declares an edge that was put together before, or that may fail: see [`Edge`].
@@ -345,7 +345,7 @@ impl<'a, S: State> Hybrid<'a, S> {
     /// ```
     #[must_use]
     pub fn switch_at(self, from: impl Into<Cow<'static, str>>, to: impl Into<Cow<'static, str>>, clock: Clock) -> Self {
-        self.clock(from, to, clock, |_t, x| *x)
+        self.clock(from, to, clock, |_t, x| x.clone())
     }
 
     /// Says when the flow of a mode is not smooth in time: a step ends at each of these times, and
@@ -378,8 +378,8 @@ impl<'a, S: State> Hybrid<'a, S> {
     ///     .stops_everywhere(outside.stops())
     ///     .mode("off", |t, x: &f64| 0.1 * (outside.at(t) - x))
     ///     .mode("on", |t, x| 0.1 * (outside.at(t) - x) + 2.0)
-    ///     .edge("off", "on", |_t, x| x - 19.0, |_t, x| *x)
-    ///     .edge("on", "off", |_t, x| 21.0 - x, |_t, x| *x);
+    ///     .edge("off", "on", |_t, x| x - 19.0, |_t, x| x.clone())
+    ///     .edge("on", "off", |_t, x| 21.0 - x, |_t, x| x.clone());
     /// let run = Simulation::of(&house).run("off", 20.0, 0.0..48.0)?;
     /// assert!(run.end.stats.jumps > 10);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -397,7 +397,7 @@ impl<'a, S: State> Hybrid<'a, S> {
     ///
     /// ```
     /// use saltus::{Hybrid, Simulation, Stop};
-    /// let tank = Hybrid::new().mode("drain", |_t, _x: &f64| -0.5).terminal("drain", |_t, x| *x);
+    /// let tank = Hybrid::new().mode("drain", |_t, _x: &f64| -0.5).terminal("drain", |_t, x| x.clone());
     /// let run = Simulation::of(&tank).run("drain", 2.0, 0.0..f64::INFINITY)?;
     /// assert!(matches!(run.end.stop, Stop::Terminal { .. }));
     /// assert!((run.trajectory.end().seconds() - 4.0).abs() < 1e-12);
@@ -410,7 +410,7 @@ impl<'a, S: State> Hybrid<'a, S> {
         guard: impl Fn(f64, &S) -> f64 + Send + Sync + 'a,
     ) -> Self {
         let from = kept(from);
-        self.edge_with(from, from, Edge::new(guard, |_t, x: &S| *x).terminal())
+        self.edge_with(from, from, Edge::new(guard, |_t, x: &S| x.clone()).terminal())
     }
 
     /// [`Edge::entry`] of the edge declared last.
@@ -420,7 +420,7 @@ impl<'a, S: State> Hybrid<'a, S> {
     /// // A counter of passages through zero, and a mark that ends the run.
     /// let swing = Hybrid::new()
     ///     .mode("swing", |_t, x: &[f64; 2]| [x[1], -x[0]])
-    ///     .edge("swing", "swing", |_t, x| x[0], |_t, x| *x)
+    ///     .edge("swing", "swing", |_t, x| x[0], |_t, x| x.clone())
     ///     .entry(Entry::Wait)
     ///     .terminal("swing", |t, _x| 20.0 - t);
     /// assert_eq!(Simulation::of(&swing).run("swing", [-1.0, 0.0], 0.0..1e9)?.end.stats.jumps, 4);

@@ -43,7 +43,7 @@ impl<S: State> Automaton for Hybrid<'_, S> {
         }
         match mode.and_then(|mode| mode.exact.as_ref()) {
             // The solution's slope where it starts.
-            Some(solution) => solution(t, x).coefficients().get(1).copied().unwrap_or_else(|| x.with(|_| 0.0)),
+            Some(solution) => solution(t, x).coefficients().get(1).cloned().unwrap_or_else(|| x.with(|_| 0.0)),
             None => x.with(|_| f64::NAN),
         }
     }

@@ -231,7 +231,7 @@ impl Stepper for Dop853 {
         let d11 = stages.next(C[9], &A11, [&d4, &d5, &d6, &d7, &d8, &d9, &d10]);
         let d12 = stages.next(1.0, &A12, [&d4, &d5, &d6, &d7, &d8, &d9, &d10, &d11]);
         let end = stages.state(1.0, &B, [&d6, &d7, &d8, &d9, &d10, &d11, &d12]);
-        Trial { end, slope: flow(t + h, &end), stages: [*slope, d6, d7, d8, d9, d10, d11, d12] }
+        Trial { slope: flow(t + h, &end), end, stages: [slope.clone(), d6, d7, d8, d9, d10, d11, d12] }
     }
 
     #[inline]
@@ -272,8 +272,9 @@ impl Stepper for Dop853 {
             x.with(|i| 3.0 * f6.get(i) - f5.get(i)),
             x.with(|i| -f6.get(i)),
         ];
+        let c2 = closing(x, end, &c1, &higher);
         let [c3, c4, c5, c6, c7] = higher;
-        [*x, c1, closing(x, end, &c1, &higher), c3, c4, c5, c6, c7]
+        [x.clone(), c1, c2, c3, c4, c5, c6, c7]
     }
 }
 

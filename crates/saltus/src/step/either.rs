@@ -179,7 +179,7 @@ mod tests {
             h: f64,
         ) -> Trial<S, S> {
             let end = x.with(|i| x.get(i) + h * slope.get(i));
-            Trial { end, slope: flow(t + h, &end), stages: *slope }
+            Trial { slope: flow(t + h, &end), end, stages: slope.clone() }
         }
         fn error<S: State>(&self, h: f64, trial: Trial<&S, &S>, square: impl Fn(&S) -> f64) -> f64 {
             self.trust * square(&trial.end.with(|i| 0.5 * h * (trial.slope.get(i) - trial.stages.get(i))))
@@ -195,7 +195,7 @@ mod tests {
             h: f64,
             trial: Trial<&S, &S>,
         ) -> [S; 2] {
-            [*x, x.with(|i| self.trust * h * trial.stages.get(i))]
+            [x.clone(), x.with(|i| self.trust * h * trial.stages.get(i))]
         }
     }
 

@@ -32,7 +32,7 @@ use crate::state::State;
 /// asked for. It remembers nothing from one step to the next.
 pub trait Stepper: Copy {
     /// What a trial hands on to its error estimate and its dense output.
-    type Stages<S: State>: Copy;
+    type Stages<S: State>: Clone;
     /// The coefficients of the dense output in powers of (t - t₀)/h, lowest first.
     type Dense<S: State>: AsRef<[S]>;
 

@@ -181,7 +181,7 @@ impl Stepper for Rodas5P {
         let drift = time_derivative(flow, t, x, slope, h);
         let forced = |f: S, d: f64| f.with(|i| h * GAMMA * (f.get(i) + h * d * drift.get(i)));
 
-        let u1 = system.solve(&forced(*slope, D[0]));
+        let u1 = system.solve(&forced(slope.clone(), D[0]));
         let f = flow(t + C[0] * h, &moved(x, 1.0, &A2, [&u1]));
         let u2 = system.solve(&moved(&forced(f, D[1]), GAMMA, &G2, [&u1]));
         let f = flow(t + C[1] * h, &moved(x, 1.0, &A3, [&u1, &u2]));
@@ -204,7 +204,7 @@ impl Stepper for Rodas5P {
         let end = x8.with(|i| x8.get(i) + u8.get(i));
         let u = [u1, u2, u3, u4, u5, u6, u7, u8];
         let off = off_half_way(&mut system, flow, (t, h), (x, &end), &u);
-        Trial { end, slope: flow(t + h, &end), stages: (u, *slope, off) }
+        Trial { slope: flow(t + h, &end), end, stages: (u, slope.clone(), off) }
     }
 
     #[inline]
@@ -238,8 +238,9 @@ impl Stepper for Rodas5P {
         let c1 =
             x.with(|i| if bend.get(i) == 0.0 { (trial.end.get(i) - x.get(i)) + b0.get(i) } else { h * slope.get(i) });
         let higher = [x.with(|i| b2.get(i) - b1.get(i) + 3.0 * bend.get(i)), x.with(|i| -b2.get(i) - bend.get(i))];
+        let c2 = closing(x, trial.end, &c1, &higher);
         let [c3, c4] = higher;
-        [*x, c1, closing(x, trial.end, &c1, &higher), c3, c4]
+        [x.clone(), c1, c2, c3, c4]
     }
 }
 
@@ -364,7 +365,7 @@ mod tests {
                 x.with(|i| if i + 1 < x.len() { rate(i) * (x.get(i + 1) - x.get(i)) } else { -x.get(i) })
             };
             let n = x.len();
-            let (end, _) = step(flow, 0.0, x, 0.01);
+            let (end, _) = step(flow, 0.0, x.clone(), 0.01);
             let last = x.get(n - 1) * (-0.01_f64).exp();
             assert!((end.get(n - 1) - last).abs() < 1e-12, "{n}: {end:?}");
             assert!(end.is_finite());

@@ -63,9 +63,9 @@ impl System<'_> {
             let mut probe = |to: f64| (to, flow(t, &x.with(|i| if i == j { to } else { x.get(i) })));
             let (mut above, mut below) = (probe(x.get(j) + reach), probe(x.get(j) - reach));
             if !above.1.is_finite() {
-                above = (x.get(j), *slope);
+                above = (x.get(j), slope.clone());
             } else if !below.1.is_finite() {
-                below = (x.get(j), *slope);
+                below = (x.get(j), slope.clone());
             }
             let scale = -h * gamma / (above.0 - below.0);
             for i in 0..n {

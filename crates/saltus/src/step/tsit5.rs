@@ -73,7 +73,7 @@ impl Stepper for Tsit5 {
         let d5 = stages.next(C[3], &A5, [&d2, &d3, &d4]);
         let d6 = stages.next(C[4], &A6, [&d2, &d3, &d4, &d5]);
         let end = stages.state(C[5], &B, [&d2, &d3, &d4, &d5, &d6]);
-        Trial { end, slope: flow(t + h, &end), stages: [*slope, d2, d3, d4, d5, d6] }
+        Trial { slope: flow(t + h, &end), end, stages: [slope.clone(), d2, d3, d4, d5, d6] }
     }
 
     #[inline]
@@ -103,7 +103,10 @@ impl Stepper for Tsit5 {
         let c1 = x.with(|i| h * trial.stages[0].get(i));
         let higher = |d: &[f64; 6]| x.with(|i| h * weighted(d, all(trial, &last), i));
         let (c3, c4) = (higher(&D[0]), higher(&D[1]));
-        [*x, c1, closing(x, trial.end, &c1, &[c3, c4]), c3, c4]
+        let higher = [c3, c4];
+        let c2 = closing(x, trial.end, &c1, &higher);
+        let [c3, c4] = higher;
+        [x.clone(), c1, c2, c3, c4]
     }
 }
 

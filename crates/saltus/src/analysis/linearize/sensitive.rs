@@ -53,12 +53,12 @@ impl<S: State, const K: usize> State for Tangent<S, K> {
     fn with(&self, mut f: impl FnMut(usize) -> f64) -> Self {
         let n = self.x.len();
         let x = self.x.with(&mut f);
-        let (mut columns, mut k) = (self.columns, 0);
+        let (mut columns, mut k) = (self.columns.clone(), 0);
         while k < columns.len() {
             columns[k] = columns[k].with(|i| f(n * (k + 1) + i));
             k += 1;
         }
-        Self { x, columns, ..*self }
+        Self { x, columns, dt: self.dt, jumped: self.jumped }
     }
     /// That of the state; `voltage by q1` in the column of q₁.
     fn name(&self, i: usize) -> Cow<'static, str> {
@@ -212,7 +212,7 @@ impl<'a, A: Linearize, const K: usize> Sensitive<'a, A, K> {
                 let column = columns[k].as_ref().and_then(|column| column.coefficients().get(power));
                 column.map_or_else(|| c.with(|_| 0.0), |column| velocity(column, c))
             });
-            Tangent { x: *c, columns, ..*x }
+            Tangent { x: c.clone(), columns, dt: x.dt, jumped: x.jumped }
         }))
     }
 }
@@ -231,7 +231,7 @@ impl<A: Linearize, const K: usize> Automaton for Sensitive<'_, A, K> {
             let slope = self.automaton.flow_over(mode, Dual64::from(t), moving(&x.x, &x.columns[k]), parameters);
             velocity(&slope, &x.x)
         });
-        Tangent { x: self.automaton.flow(mode, t, &x.x), columns, ..*x }
+        Tangent { x: self.automaton.flow(mode, t, &x.x), columns, dt: x.dt, jumped: x.jumped }
     }
 
     fn edges(&self, mode: A::Mode) -> Edges<'_, A::Edge> {
@@ -250,7 +250,8 @@ impl<A: Linearize, const K: usize> Automaton for Sensitive<'_, A, K> {
         let (grazes, at_once) = (passage.grazes(duration), passage.is_at_once(duration));
         // An edge that fires where the last jump led happens when that jump happens.
         let follows = self.automaton.about(edge).entry == Entry::Fire && passage.is_outside();
-        let mut after = Tangent { x: passage.after, columns: [passage.after; K], dt: x.dt, jumped: t };
+        let columns = std::array::from_fn(|_| passage.after.clone());
+        let mut after = Tangent { x: passage.after.clone(), columns, dt: x.dt, jumped: t };
         for (k, column) in x.columns.iter().enumerate() {
             let p = self.parameter(k);
             // So does one that neighbouring runs, too, take at once after the last: a ball that
@@ -296,7 +297,8 @@ impl<A: Linearize, const K: usize> Automaton for Sensitive<'_, A, K> {
         let (to, after) = self.automaton.beyond(&Limit::new(mode, edges, t, &x.x))?;
         let (before, onward) = (self.automaton.flow(mode, t, &x.x), self.automaton.flow(to, t, &after));
         let p = self.automaton.parameters();
-        let mut beyond = Tangent { x: after, columns: [after; K], dt: x.dt, jumped: t };
+        let columns = std::array::from_fn(|_| after.clone());
+        let mut beyond = Tangent { x: after.clone(), columns, dt: x.dt, jumped: t };
         for (k, dt) in x.dt.into_iter().enumerate() {
             let carried = x.columns[k].with(|i| x.columns[k].get(i) + before.get(i) * dt);
             let parameters = moving_in(&p, self.parameter(k));

@@ -257,7 +257,7 @@ impl<'a, A: Linearize, X: Section<A, K>, const K: usize, M: Stepper> ReturnMap<'
         let p = |wrt: Wrt| parameters.lift(|i| Dual64::new(parameters.get(i), unit(wrt == Wrt::Parameter(i))));
 
         let sensitive = Sensitive::of(automaton, by);
-        let mut start = sensitive.start(t, x);
+        let mut start = sensitive.start(t, x.clone());
         for (column, wrt) in start.columns.iter_mut().zip(by) {
             let moving = std::array::from_fn(|i| Dual64::new(q[i], unit(wrt == Wrt::Initial(i))));
             let (state, later) = (self.section.place(moving, p(wrt)), self.section.time(moving, p(wrt)).eps);
@@ -359,7 +359,7 @@ impl<B: Automaton> Observer<B> for Until<'_, B> {
         if self.left > 0 {
             return ControlFlow::Continue(());
         }
-        self.back = Some(*jump);
+        self.back = Some(jump.clone());
         ControlFlow::Break(())
     }
 }

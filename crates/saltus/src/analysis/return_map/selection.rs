@@ -78,7 +78,7 @@ impl<A: Linearize, const K: usize> Section<A, K> for Selection<A::Mode, A::State
         self.edge
     }
     fn start(&self) -> (A::Mode, A::State) {
-        (self.mode, self.state)
+        (self.mode, self.state.clone())
     }
     fn place<D: Number>(&self, q: [D; K], _: Over<A::Parameters, D>) -> Over<A::State, D> {
         let chosen = |i: usize| self.which.iter().position(|&which| which == i);
