@@ -62,8 +62,8 @@ impl Automaton for Network {
     fn guard(&self, neuron: usize, _t: f64, u: &Vector) -> f64 {
         1.0 - u[neuron]
     }
-    fn about(&self, _: usize) -> About {
-        About::new().affine().entry(Entry::Fire)
+    fn about(&self, neuron: usize) -> About {
+        About::new().affine().reads(neuron..neuron + 1).entry(Entry::Fire)
     }
     fn reset(&self, (): (), neuron: usize, _t: f64, u: &Vector) -> Result<((), Vector), Refusal> {
         let mut after: Vector = u.iter().map(|u| u + self.pulse).collect();

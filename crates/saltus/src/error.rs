@@ -251,10 +251,9 @@ fn of_edge(f: &mut fmt::Formatter<'_>, kind: ErrorKind, note: Option<&str>, edge
         ErrorKind::Guard => {
             write!(f, "the guard of edge {by} is not a number: define it on the whole domain, or end the mode before")
         }
-        ErrorKind::Promise => write!(
-            f,
-            "the guard of edge {by} is promised affine and {given}: it must be a sum of coordinates times constants, and a constant; leave the promise out (affine, About::affine)"
-        ),
+        ErrorKind::Promise => {
+            write!(f, "the guard of edge {by} is promised {given}; leave the promise out (About::affine, About::reads)")
+        }
         ErrorKind::Reset => {
             let by = edge.map_or("Automaton::beyond".to_owned(), |edge| format!("the reset of edge {edge}"));
             write!(

@@ -9,8 +9,9 @@ use nalgebra::SVector;
 /// The continuous state x of a hybrid automaton: a list of real coordinates.
 ///
 /// Implemented for `f64`, `[f64; N]`, [`SVector<f64, N>`]; for [`Coords`], whose dimension may
-/// differ from mode to mode, and [`Vector`](crate::Vector), which has any; and, with the feature `derive`, by `#[derive(State)]` for a struct of
-/// these, whose fields then name its coordinates in flows, tables and errors.
+/// differ from mode to mode, and [`Vector`](crate::Vector), which has any; and, with the feature
+/// `derive`, by `#[derive(State)]` for a struct of these, whose fields then name its coordinates in
+/// flows, tables and errors.
 ///
 /// ```
 /// use saltus::State;

@@ -1,5 +1,7 @@
 //! An affine guard g(x) = a·x + b along a dense output: a polynomial of time.
 
+use std::ops::Range;
+
 use crate::automaton::Automaton;
 use crate::certainty::{FEW, SURELY, TINY};
 use crate::cross::{FirstFall, Powers, Start};
@@ -38,7 +40,13 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
         let count = &mut self.memory.stats.guards;
         if let (Start::Spent, Some(slope)) = (start, c.get(1))
-            && only_touched(powers.coefficients(), &guard, constant, slope, count)
+            && only_touched(
+                powers.coefficients(),
+                &guard,
+                constant,
+                (slope, self.automaton.about(edge).read(slope.len())),
+                count,
+            )
         {
             powers.drop_slope();
         }
@@ -105,24 +113,29 @@ fn less<S: State>(guard: &dyn Fn(&S) -> f64, constant: f64, x: &S) -> f64 {
 }
 
 /// Whether an affine guard of these `powers` that seems to fall from its root only touched zero
-/// there: it bends down, and its slope, that of the state `x`, is no more than rounding.
+/// there: it bends down, and its slope, that of the state, is no more than rounding.
 #[inline]
 pub(super) fn only_touched<S: State>(
     powers: &[f64],
     guard: &dyn Fn(&S) -> f64,
     constant: f64,
-    x: &S,
+    of: (&S, Range<usize>),
     count: &mut u64,
 ) -> bool {
-    matches!(powers, [_, slope, bend, ..] if *slope < 0.0 && *bend < 0.0) && is_rounding(guard, constant, x, count)
+    matches!(powers, [_, slope, bend, ..] if *slope < 0.0 && *bend < 0.0) && is_rounding(guard, constant, of, count)
 }
 
 /// Whether what an affine guard of this `constant` adds to it for the state `x` is no more than the
-/// rounding of what each coordinate adds.
+/// rounding of what each coordinate adds that it may `read`.
 #[cold]
-pub(super) fn is_rounding<S: State>(guard: &dyn Fn(&S) -> f64, constant: f64, x: &S, count: &mut u64) -> bool {
-    *count += x.len() as u64 + 1;
+pub(super) fn is_rounding<S: State>(
+    guard: &dyn Fn(&S) -> f64,
+    constant: f64,
+    (x, read): (&S, Range<usize>),
+    count: &mut u64,
+) -> bool {
+    *count += read.len() as u64 + 1;
     let part = |k: usize| less_constant(guard, constant, &x.with(|i| if i == k { x.get(i) } else { 0.0 }));
-    let parts: f64 = (0..x.len()).map(|k| part(k).abs()).sum();
+    let parts: f64 = read.map(|k| part(k).abs()).sum();
     less_constant(guard, constant, x).abs() <= SUMMED * f64::EPSILON * parts
 }

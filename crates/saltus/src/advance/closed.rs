@@ -87,7 +87,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         // A solution that no polynomial follows over so short a piece is followed by none.
         let shortest = TINY * if natural > 0.0 { span.min(natural) } else { span };
         let mut pieces = 0;
-        // What the formula is rough by, as far as pieces have shown it, and how far the last was off.
+        // What the formula is rough by, of the pieces so far, and how far the last one was off.
         let (mut noise, mut longer) = (x.with(|_| 0.0), None);
         // Of a long arc the first piece is as long as the solution takes to change.
         let (mut from, mut length) = (0.0, if natural > 0.0 { span.min(FIRST * natural) } else { span });

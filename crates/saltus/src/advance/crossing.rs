@@ -1,5 +1,7 @@
 //! The first crossing on a piece of an arc, and the state on its inner side.
 
+use std::ops;
+
 use crate::automaton::Automaton;
 use crate::automaton::refusal::guard_undefined;
 use crate::certainty::{FAR, FEW, ROUGHLY, SURELY};
@@ -212,13 +214,15 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let t = time.seconds();
         self.memory.stats.guards += 1;
         let outer = self.guard(edge, now.after(outside).seconds(), &at(outside));
+        let about = self.automaton.about(edge);
         let mut guard = |x: &A::State| {
             self.memory.stats.guards += 1;
             self.guard(edge, t, x)
         };
         let nearest = at(root);
         let g = guard(&nearest);
-        let (state, g) = if g >= 0.0 { (nearest, g) } else { innermost(&mut guard, &nearest, &at(span)) };
+        let (state, g) =
+            if g >= 0.0 { (nearest, g) } else { innermost(&mut guard, &nearest, &at(span), about.read(nearest.len())) };
         (self.memory.slack, self.memory.leapt) = (FEW * g.abs().max(outer.abs()), leaps);
         let short = self.memory.is_short(root);
         let resolved = root > SURELY * f64::EPSILON * t.abs();
@@ -328,12 +332,12 @@ pub(super) struct Close<S> {
 ///
 /// Always keeping the inner end would make every crossing early by half a rounding, and an elastic
 /// ball lose energy at each impact. So coordinates are taken from the inner end only as far as it
-/// takes to stay inside: a ball's height, not its speed.
+/// takes to stay inside, and of those that the guard may `read`: a ball's height, not its speed.
 ///
 /// Returns the state and its guard, for a nearest one that is outside.
 #[inline]
-fn innermost<S: State>(mut guard: impl FnMut(&S) -> f64, nearest: &S, inner: &S) -> (S, f64) {
-    for k in 0..nearest.len() {
+fn innermost<S: State>(mut guard: impl FnMut(&S) -> f64, nearest: &S, inner: &S, read: ops::Range<usize>) -> (S, f64) {
+    for k in read {
         let mixed = nearest.with(|i| if i == k { inner.get(i) } else { nearest.get(i) });
         let g = guard(&mixed);
         if g >= 0.0 {

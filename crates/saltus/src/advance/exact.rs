@@ -71,7 +71,15 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let constant = g(&c[0].with(|_| 0.0));
         let power = |k: usize| c.get(k).map_or(0.0, |c| less_constant(g, constant, c));
         let mut powers = [g(&c[0]) - self.level(edge), power(1), power(2)];
-        if start == Start::Spent && only_touched(&powers, &g, constant, &c[1], &mut self.memory.stats.guards) {
+        if start == Start::Spent
+            && only_touched(
+                &powers,
+                &g,
+                constant,
+                (&c[1], self.automaton.about(edge).read(c[1].len())),
+                &mut self.memory.stats.guards,
+            )
+        {
             powers[1] = 0.0;
         }
         let Some(near) = quadratic_fall(powers, start == Start::Spent).filter(|&near| near <= limit) else {

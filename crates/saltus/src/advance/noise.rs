@@ -90,7 +90,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// together.
     pub(super) fn moved(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64, by: impl Fn(usize) -> f64) -> f64 {
         let mut sum = 0.0;
-        for k in 0..x.len() {
+        for k in self.automaton.about(edge).read(x.len()) {
             self.memory.stats.guards += 1;
             let nudged = x.with(|i| if i == k { x.get(i) + by(i) } else { x.get(i) });
             let change = (self.guard(edge, t, &nudged) - g).abs();
@@ -175,7 +175,17 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 let constant = guard(&slope.with(|_| 0.0));
                 let told = less_constant(guard, constant, c1);
                 let rate = h * less_constant(guard, constant, slope);
-                (rate, told, told < 0.0 && !is_rounding(&guard, constant, c1, &mut self.memory.stats.guards))
+                (
+                    rate,
+                    told,
+                    told < 0.0
+                        && !is_rounding(
+                            &guard,
+                            constant,
+                            (c1, self.automaton.about(edge).read(c1.len())),
+                            &mut self.memory.stats.guards,
+                        ),
+                )
             } else {
                 self.memory.stats.guards += 5;
                 let s = SMALL * h;

@@ -64,16 +64,38 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let [x, y] = ends;
         let [a, b] = PARTS;
         let (zero, sum) = (y.with(|_| 0.0), y.with(|i| a * x.get(i) + b * y.get(i)));
+        if let Some((edge, flaw)) = self.reads_more(mode, times[0], x, &sum) {
+            return Err(Error::new(ErrorKind::Promise, Place::new(times[0], mode, Some(edge), x)).noting(Some(flaw)));
+        }
         for edge in self.automaton.edges(mode).iter() {
             if !self.automaton.about(edge).affine {
                 continue;
             }
             if let Some(flaw) = self.broken(edge, times, ends, (&zero, &sum)) {
                 let place = Place::new(times[0], mode, Some(edge), ends[0]);
-                return Err(Error::new(ErrorKind::Promise, place).noting(Some(flaw.to_owned())));
+                return Err(Error::new(ErrorKind::Promise, place).noting(Some(format!(
+                    "affine and {flaw}: it must be a sum of coordinates times constants, and a constant"
+                ))));
             }
         }
         Ok(())
+    }
+
+    /// Of the edges of the mode the one whose turn it is, and why it does not read what it is
+    /// promised to, if it does not: with the coordinates that it does not read of another state.
+    fn reads_more(&self, mode: A::Mode, t: f64, x: &A::State, other: &A::State) -> Option<(A::Edge, String)> {
+        let edges = self.automaton.edges(mode);
+        let count = edges.iter().count() as u64;
+        let edge = edges.iter().nth(usize::try_from(self.memory.arcs.checked_rem(count)?).ok()?)?;
+        let (first, end) = self.automaton.about(edge).reads?;
+        let n = x.len();
+        if first >= end || end > n {
+            return Some((edge, format!("to read the coordinates {first}..{end}, and there are {n}, counted from 0")));
+        }
+        let mixed = x.with(|i| if (first..end).contains(&i) { x.get(i) } else { other.get(i) });
+        let (here, there) = (self.guard(edge, t, x), self.guard(edge, t, &mixed));
+        let flaw = format!("to read the coordinates {first}..{end} alone, and changes with another");
+        (here.is_finite() && here != there).then_some((edge, flaw))
     }
 
     /// Why the guard is not a·x + b, if it is not at two states, at the state `zero` and at the

@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 use std::fmt::Debug;
+use std::ops::Range;
 
 pub(crate) mod clocks;
 pub(crate) mod edges;
@@ -184,6 +185,9 @@ pub struct About {
     pub terminal: bool,
     /// Whether the run ends there because the model does not determine how the state goes on.
     pub undetermined: bool,
+    /// The coordinates that the guard reads, where it names them: from the first on, up to the
+    /// second and without it.
+    pub reads: Option<(usize, usize)>,
 }
 
 impl About {
@@ -191,7 +195,7 @@ impl About {
     #[must_use]
     #[inline]
     pub const fn new() -> Self {
-        Self { entry: Entry::Refuse, affine: false, terminal: false, undetermined: false }
+        Self { entry: Entry::Refuse, affine: false, terminal: false, undetermined: false, reads: None }
     }
 
     /// With what to do when the guard is already negative as the mode is entered.
@@ -220,6 +224,42 @@ impl About {
     #[inline]
     pub const fn affine_if(self, affine: bool) -> Self {
         Self { affine, ..self }
+    }
+
+    /// Promises that the guard reads the coordinates of this range and no others.
+    ///
+    /// How far its value may be off is then asked of these alone: of a state of n coordinates,
+    /// which of them a crossing depends on takes as many evaluations of the guard as the range has
+    /// places, in place of n. A promise that does not hold, or that names a coordinate that the
+    /// state does not have, is an error ([`ErrorKind::Promise`](crate::ErrorKind::Promise)) where
+    /// the ends of an arc show it: the edges of a mode are looked at in turn, one at each arc where
+    /// promises are looked at.
+    ///
+    /// ```
+    /// use saltus::{About, Edge, ErrorKind, Hybrid, Simulation, Vector};
+    /// let net = |read| Hybrid::new()
+    ///     .mode("run", |_t, x: &Vector| x.iter().map(|x| 1.5 - x).collect())
+    ///     .edge_with("run", "run", Edge::new(|_t, x: &Vector| 1.0 - x[7], |_t, x| x.iter().map(|_| 0.0).collect())
+    ///         .affine().reads(read));
+    /// let start = || Vector::from_fn(100, |i| 0.01 * i as f64);
+    /// assert!(Simulation::of(&net(7..8)).run("run", start(), 0.0..5.0)?.end.jumps > 3);
+    /// for wrong in [3..5, 100..101] {
+    ///     let error = Simulation::of(&net(wrong)).run("run", start(), 0.0..5.0).unwrap_err().error;
+    ///     assert_eq!(error.kind(), ErrorKind::Promise);
+    /// }
+    /// # Ok::<(), saltus::Error>(())
+    /// ```
+    #[must_use]
+    #[inline]
+    #[allow(clippy::needless_pass_by_value)] // a range is no list
+    pub const fn reads(self, coordinates: Range<usize>) -> Self {
+        Self { reads: Some((coordinates.start, coordinates.end)), ..self }
+    }
+
+    /// Those of `n` coordinates that the guard may read.
+    #[inline]
+    pub(crate) fn read(&self, n: usize) -> Range<usize> {
+        self.reads.map_or(0..n, |(first, end)| first..end.min(n))
     }
 
     /// The run ends where the edge is taken: its reset is applied, then the run stops.

@@ -1,6 +1,7 @@
 //! An edge of an automaton of closures, and what holds of it.
 
 use std::fmt;
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::{Flow, Refuses};
@@ -89,6 +90,14 @@ impl<'a, S: State> Edge<'a, S> {
     #[must_use]
     pub fn affine(mut self) -> Self {
         self.about = self.about.affine();
+        self
+    }
+
+    /// Promises that the guard reads the coordinates of this range and no others; see
+    /// [`About::reads`].
+    #[must_use]
+    pub fn reads(mut self, coordinates: Range<usize>) -> Self {
+        self.about = self.about.reads(coordinates);
         self
     }
 
