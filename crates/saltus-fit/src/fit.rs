@@ -52,6 +52,8 @@ pub struct Fit {
     model: Option<CorModel>,
     /// The ball that the table names.
     named: Option<Ball>,
+    /// The readings are those of one group.
+    within: bool,
 }
 
 impl Fit {
@@ -264,7 +266,8 @@ impl Fit {
             return Err(FitError::Ended);
         }
         if groups.len() > 1 {
-            let fit = |name: &&str| Ok(Group::new(name, self.run_with(&table.of_group(name), progress)?));
+            let own = Self { within: true, ..*self };
+            let fit = |name: &&str| Ok(Group::new(name, own.run_with(&table.of_group(name), progress)?));
             let groups: Vec<Group> = groups.iter().map(fit).collect::<Result<_, FitError>>()?;
             let like = groups[0].report.clone();
             return Ok(Report::of_groups(table, groups, &like));
@@ -274,6 +277,7 @@ impl Fit {
             let fit = if named.air_shows(table, ball)? { named.drag(ball.drag()) } else { named };
             return fit.run_with(table, progress);
         }
+        let as_read = table;
         let (table, known) = self.scaled(table);
         let table = &*table;
         let mut evidence = self.evidence(table, &known)?;
@@ -289,6 +293,13 @@ impl Fit {
         let mut comparison = compare::all(&fits, &self.wanted())?;
         let extras = self.extras(&fits, progress)?;
         let mut judgement = verdict::of_readings(&fits, &mut comparison, self.model, (&known, self.stated()));
+        let beside = |kind: &FindingKind| match kind {
+            FindingKind::AsideDiffers { column, .. } => as_read.apart_by(column),
+            _ => None,
+        };
+        if let Some(apart) = judgement.findings.iter().find_map(|f| beside(&f.kind)).filter(|_| !self.within) {
+            return self.run_with(&apart, progress);
+        }
         self.note_ball(&mut judgement);
         if self.bootstrap.is_some() && extras.bootstrap.is_none() {
             judgement.note(FindingKind::NoBootstrap { trials: evidence.trials.len() });

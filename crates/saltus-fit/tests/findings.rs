@@ -183,6 +183,7 @@ fn every_remark_comes_back() {
         Note::Sheets { sheets: columns(), drops: true },
         Note::SheetsAside { sheets: columns() },
         Note::Filtered { kept: 5, left_out: 2 },
+        Note::Apart { column: column() },
         Note::Dropped { height_m: 1.5 },
         Note::Floor { reading: "812".to_owned(), down: true },
         Note::FallingTimes,
@@ -237,5 +238,5 @@ fn every_remark_comes_back() {
         },
         Warning::MoreStrays { heights: 7 },
     ];
-    assert_eq!((back(notes), back(repairs), back(warnings)), (42, 6, 7));
+    assert_eq!((back(notes), back(repairs), back(warnings)), (43, 6, 7));
 }

@@ -33,15 +33,59 @@ pub(crate) fn differ(trials: &[Trial], separate: &[(f64, f64)], cor: f64) -> Opt
 
 /// A column that was left aside, and how the CORs differ by what stands in it: that with the least
 /// probability by chance. Its values have to repeat, so that the trials of one value tell their own
-/// scatter.
+/// scatter. Beside such columns a condition is looked at that is another in every row: the CORs may
+/// follow its numbers.
 pub(crate) fn differ_beside(trials: &[Trial], separate: &[(f64, f64)], cor: f64) -> Option<(String, Differ)> {
-    let names: BTreeSet<&str> = trials.iter().flat_map(|trial| trial.beside.iter().map(|(name, _)| &**name)).collect();
-    let cell = |trial: &'_ Trial, name: &str| trial.beside.iter().position(|(other, _)| other == name);
-    let found = names.into_iter().filter_map(|name| {
-        let differ = differ_by(trials, separate, cor, |trial| cell(trial, name).map(|n| trial.beside[n].1.as_str()))?;
+    let all = |of: fn(&Trial) -> &[(String, String)]| -> BTreeSet<&str> {
+        trials.iter().flat_map(|trial| of(trial).iter().map(|(name, _)| &**name)).collect()
+    };
+    let conditions = all(|trial| &trial.conditions).into_iter().filter_map(|name| {
+        let found = follow(trials, separate, cor, |trial| cell(&trial.conditions, name))?;
+        Some((name.to_owned(), found))
+    });
+    let found = all(|trial| &trial.beside).into_iter().filter_map(|name| {
+        let differ = differ_by(trials, separate, cor, |trial| cell(&trial.beside, name))?;
         (differ.spare > 0).then(|| (name.to_owned(), differ))
     });
-    found.min_by(|a, b| a.1.p.total_cmp(&b.1.p))
+    found.chain(conditions).min_by(|a, b| a.1.p.total_cmp(&b.1.p))
+}
+
+/// The cell of a column of this name.
+fn cell<'a>(cells: &'a [(String, String)], name: &str) -> Option<&'a str> {
+    cells.iter().find(|(other, _)| other == name).map(|(_, cell)| cell.as_str())
+}
+
+/// The straight line of the trials' own CORs over the numbers of a column, each trial weighing by
+/// its information; `None` where a cell begins with no number, or the line tells no scatter about
+/// it. `low` and `high` are the cells and the CORs at the ends of the line.
+#[allow(clippy::cast_precision_loss)]
+fn follow<'a>(
+    trials: &'a [Trial],
+    separate: &[(f64, f64)],
+    cor: f64,
+    key: impl Fn(&'a Trial) -> Option<&'a str>,
+) -> Option<Differ> {
+    let point = |(trial, s): (&'a Trial, &(f64, f64))| {
+        let cell = key(trial)?;
+        Some((cell, (s.0, leading(cell)?, s.1)))
+    };
+    let weighing = trials.iter().zip(separate).filter(|(_, s)| s.0 > 0.0);
+    let mut points: Vec<(&str, Point)> = weighing.map(point).collect::<Option<_>>()?;
+    points.sort_by(|a, b| a.1.1.total_cmp(&b.1.1));
+    let spare = points.len().checked_sub(2).filter(|spare| *spare > 0)?;
+    let line = Line::through(points.iter().map(|point| point.1));
+    let about = (line.all - line.explained).max(1e-300) / spare as f64;
+    let p = variance_ratio_p(line.explained / about, 1, spare)?;
+    let at = |(cell, point): &(&str, Point)| ((*cell).to_owned(), cor + line.at(point.1));
+    let (first, last) = (at(points.first()?), at(points.last()?));
+    let (low, high) = if first.1 < last.1 { (first, last) } else { (last, first) };
+    (high.1 - low.1 > ROUNDED).then_some(Differ { p, spare, low, high })
+}
+
+/// The number that a cell begins with, `20` of `20 °C`.
+fn leading(cell: &str) -> Option<f64> {
+    let end = cell.find(|c: char| !(c.is_ascii_digit() || matches!(c, '.' | ',' | '-' | '+'))).unwrap_or(cell.len());
+    cell[..end].replace(',', ".").parse().ok().filter(|number: &f64| number.is_finite())
 }
 
 fn differ_by<'a>(

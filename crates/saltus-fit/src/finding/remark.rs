@@ -236,6 +236,11 @@ pub enum Note {
         /// Rows that do not.
         left_out: usize,
     },
+    /// Words of a column that is not understood tell groups apart, by which the COR differs.
+    Apart {
+        /// The column.
+        column: String,
+    },
     /// The height of release is stated beside the readings.
     Dropped {
         /// It, m.

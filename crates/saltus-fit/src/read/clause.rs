@@ -1,6 +1,8 @@
 //! What a clause of text states: a frame rate, the height of release, the unit and the error of all
 //! readings, a length.
 
+use std::borrow::Cow;
+
 use super::cell::{self, Cell};
 use super::heading::{At, DropHeight, Heading, Role, rate, released};
 use super::named::names_floor;
@@ -48,6 +50,7 @@ fn turns_away(word: &Word) -> bool {
 /// `Drop height: 1 m`, `Drop height (cm) 100`, `tested, dropped from 100 cm onto stone`: of the
 /// clause that states it every word up to the number has to be understood.
 pub(super) fn drop(text: &str) -> Option<DropHeight> {
+    let text = &*without_error(text);
     // `our ball (dropped from 1 m)`.
     clauses(text).chain(bracketed(text)).chain(dashed(text)).find_map(|clause| {
         let plain = |w: &Word| !matches!(w.kind, Kind::Unknown | Kind::Number(_)) && !turns(w);
@@ -77,7 +80,15 @@ pub(super) fn drop(text: &str) -> Option<DropHeight> {
                     Phrase::From.is(&folded(&w.text)) || w.is(Atom::Filler) && beyond && after.is_empty()
                 })
                 && !before.iter().any(turns);
-            let fits = before.iter().all(plain) && (whole || said && !after.iter().any(turns)) || told;
+            // Whatever else is told of it: a ball was let go, and the number stands behind `from`,
+            // or before `height`.
+            let last = before.last().map(|w| folded(&w.text)).unwrap_or_default();
+            let begins = after.first().is_some_and(|w| w.is(Atom::Height));
+            let placed = Phrase::From.is(&last) || Phrase::At.is(&last) && begins;
+            let all = || before.iter().chain(&after);
+            let of_ball = placed && all().any(|w| w.is(Atom::Release)) && all().any(|w| w.is(Atom::Label));
+            let of_ball = of_ball && beyond && !all().any(|w| turns(w) || matches!(w.kind, Kind::Number(_)));
+            let fits = before.iter().all(plain) && (whole || said && !after.iter().any(turns)) || told || of_ball;
             return fits.then_some(height);
         }
         let (value, before) = last_number(clause.trim_end())?;
@@ -91,9 +102,23 @@ pub(super) fn drop(text: &str) -> Option<DropHeight> {
     })
 }
 
+/// A text whose number with its error in brackets, and the unit behind these, is the number with
+/// the unit: `(120 ± 0.5) cm`.
+fn without_error(text: &str) -> Cow<'_, str> {
+    let found = text.split_once('(').and_then(|(before, rest)| {
+        let (inside, after) = rest.split_once(')')?;
+        let (number, error) = ["±", "+/-"].iter().find_map(|mark| inside.split_once(mark))?;
+        let bare = |text: &str| text.trim().replace(',', ".").parse::<f64>().is_ok();
+        (bare(number) && bare(error)).then(|| format!("{before}{} {}", number.trim(), after.trim_start()))
+    });
+    found.map_or(Cow::Borrowed(text), Cow::Owned)
+}
+
 /// The parts of a sentence; a comma within a number parts none.
 pub(super) fn clauses(text: &str) -> impl Iterator<Item = &str> {
-    text.split([';', '!']).flat_map(|part| part.split(", ")).flat_map(|part| part.split(". "))
+    // Blanks beside each other part what stands in one line: `Floor: gym   Drop height = 1 m`.
+    let parts = text.split([';', '!']).flat_map(|part| part.split(", ")).flat_map(|part| part.split(". "));
+    parts.flat_map(|part| part.split("  ")).filter(|part| !part.is_empty())
 }
 
 /// The parts of a title that dashes tell apart, `Golf ball - dropped from 1 m`, each up to a remark

@@ -1,9 +1,13 @@
 //! Groups of trials, and rebounds that follow from a time only with gravity.
 
 use std::borrow::Cow;
+use std::collections::BTreeMap;
 
+use super::aside::{LeftAside, Part, Why};
+use super::cell::{self, Cell};
 use super::{Event, Reading, Span, Table, Trial};
 use crate::finding::{Doubt, Note};
+use crate::quantity::Ball;
 use crate::statistics::median;
 
 impl Table {
@@ -24,6 +28,37 @@ impl Table {
     pub(crate) fn of_group(&self, group: &str) -> Self {
         let trials = self.trials.iter().filter(|trial| trial.group == group).cloned().collect();
         Self { trials, ..self.clone() }
+    }
+
+    /// The table with a group for each of the words of a column that was left aside, where these
+    /// come again: of a column that is not understood, or of words beside readings, and not of
+    /// remarks. `None` where a cell holds a number or nothing, or a word stands beside one trial.
+    pub(crate) fn apart_by(&self, column: &str) -> Option<Self> {
+        let of = |aside: &LeftAside| aside.what == Part::Column && aside.name == column;
+        let names =
+            self.left_aside.iter().any(|aside| of(aside) && matches!(aside.why, Why::NotUnderstood | Why::Other));
+        let cell = |trial: &'_ Trial| {
+            let found = trial.beside.iter().position(|(name, _)| name == column);
+            found.filter(|n| cell::read(&trial.beside[*n].1, false) == Cell::Words)
+        };
+        let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+        for trial in &self.trials {
+            *counts.entry(trial.beside[cell(trial)?].1.as_str()).or_default() += 1;
+        }
+        if !names || counts.len() < 2 || counts.values().any(|count| *count < 2) {
+            return None;
+        }
+        let mut table = self.clone();
+        for trial in &mut table.trials {
+            let (name, word) = trial.beside.remove(cell(trial)?);
+            let part = format!("{name} {word}");
+            trial.setting = if trial.setting.is_empty() { part } else { format!("{}, {part}", trial.setting) };
+            trial.ball = trial.ball.or(Ball::named(&word));
+            trial.group = word;
+        }
+        table.left_aside.retain(|aside| !of(aside));
+        table.notes.push(Note::Apart { column: column.to_owned() }.into());
+        Some(table)
     }
 
     /// The table with the rebounds that follow from times where gravity is `g`; `sigma` is the

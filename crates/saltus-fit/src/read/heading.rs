@@ -466,7 +466,9 @@ impl Heading {
         if found.len() > 1 && words[found[0]].text == "in" {
             found.remove(0);
         }
-        if let Some(&n) = found.first().filter(|_| self.unit.is_none()) {
+        // The same unit may stand behind an error as well: `height / m ± 0.01 m`.
+        let stated = |n: &&usize| self.unit.is_none() || self.unit == Unit::parse(&words[**n].text);
+        if let Some(&n) = found.first().filter(stated) {
             self.unit = Unit::parse(&words[n].text);
             words.remove(n);
         } else if let [word] = words.as_slice()

@@ -116,6 +116,8 @@ pub struct Trial {
     /// What stands in its rows in columns that were left aside and may matter: the name of the
     /// column, the cell.
     pub(crate) beside: Vec<(String, String)>,
+    /// The conditions of its rows that are others in every row: the name of the column, the cell.
+    pub(crate) conditions: Vec<(String, String)>,
 }
 
 /// What a time from which a rebound follows lasts from and to.

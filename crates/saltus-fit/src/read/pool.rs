@@ -40,7 +40,11 @@ pub(super) fn measured<T>(parts: &mut Vec<T>, table: impl Fn(&T) -> &Table) -> V
         return Vec::new();
     }
     let of_more = |trials: &[Trial]| {
-        let more = parts.iter().map(|part| &table(part).trials).filter(|other| other.len() > trials.len());
+        let more = || parts.iter().map(|part| &table(part).trials).filter(|other| other.len() > trials.len());
+        if more().any(|other| means_of_settings(trials, other)) {
+            return true;
+        }
+        let more = more();
         let mut drops: Vec<(f64, f64)> = more.flatten().filter_map(drop).collect();
         drops.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
         means(trials, &drops)
@@ -78,6 +82,29 @@ fn means(trials: &[Trial], drops: &[(f64, f64)]) -> bool {
         same.len() > 1 && rounds_to(mean, rebound, of_rebounds)
     };
     trials.len() > 1 && trials.iter().all(|trial| drop(trial).is_some_and(mean))
+}
+
+/// Whether each trial is one height, the mean of the rebounds of other trials of its condition, as it
+/// is rounded: `Mean rebound (m)` of each temperature, in a sheet of its own.
+fn means_of_settings(trials: &[Trial], others: &[Trial]) -> bool {
+    let alone = |trial: &Trial| match trial.readings.as_slice() {
+        [one] if one.time.is_none() => one.height,
+        _ => None,
+    };
+    // Groups of one sheet are conditions of the other, where each stands once.
+    let key = |trial: &Trial| match trial.group.as_str() {
+        "" => trial.conditions.iter().map(|(_, cell)| cell.as_str()).collect::<Vec<_>>().join(", "),
+        group => group.to_owned(),
+    };
+    let step = step(trials.iter().filter_map(alone));
+    let mean = |trial: &Trial| {
+        let own = others.iter().filter(|other| !key(trial).is_empty() && key(other) == key(trial));
+        let rebounds: Vec<f64> = own.filter_map(drop).map(|(_, rebound)| rebound).collect();
+        #[allow(clippy::cast_precision_loss)] // drops of a workbook
+        let mean = rebounds.iter().sum::<f64>() / rebounds.len() as f64;
+        rebounds.len() > 1 && alone(trial).is_some_and(|height| rounds_to(mean, height, step))
+    };
+    trials.len() > 1 && trials.iter().all(mean)
 }
 
 /// Joins tables, each with what tells it from the others, into one of all their trials.

@@ -31,12 +31,30 @@ fn hits_wall(text: &str) -> bool {
     wall && words.iter().any(|word| word.is(Atom::Label))
 }
 
+/// Whether a text names a ball and a wall: of speeds before and after, it is what the ball meets.
+fn ball_and_wall(text: &str) -> bool {
+    names_wall(text) && names_ball(text)
+}
+
+/// Whether a text names a ball: `ball`, `Wasserball`.
+fn names_ball(text: &str) -> bool {
+    let ball = |word: &str| Phrase::Ball.all().iter().any(|ball| word.ends_with(ball));
+    let named = |word: &Word| word.is(Atom::Label) || word.is(Atom::Group);
+    split(text).iter().any(|word| named(word) && ball(&folded(&word.text)))
+}
+
 /// Whether a text says that something bounces, or is dropped.
 fn says(text: &str) -> bool {
     if Heading::parse(text).cor {
         return true;
     }
-    split(text).iter().any(|word| {
+    let words = split(text);
+    // A ball that hits a floor bounces from it, though much else hits, and floors are of much else.
+    let hits = words.iter().any(|word| word.is(Atom::Impact) && word.is(Atom::Loose));
+    if hits && names_ball(text) && words.iter().any(|word| word.is(Atom::Floor)) {
+        return true;
+    }
+    words.iter().any(|word| {
         let spelt = folded(&word.text);
         let (plain, atoms) = match word.kind {
             Kind::Known(atoms) => (spelt.as_str(), atoms),
@@ -121,7 +139,9 @@ pub(super) fn unsaid(region: &Region<'_>, columns: &Columns, options: &ReadOptio
     let parts = || columns.columns.iter().find(|c| c.kind == Of::Share && c.heading.has(Atom::Energy));
     // A ball that has one speed before a wall and another after it bounces from it.
     let fast = read().any(|(_, _, v)| v.what == What::Speed);
-    let told = |text: &str| says(text) || fast && hits_wall(text);
+    let turned = [At::Before, At::After].map(|at| read().any(|(_, _, v)| v.what == What::Speed && v.at == at));
+    let met = |text: &str| hits_wall(text) || turned == [true, true] && ball_and_wall(text);
+    let told = |text: &str| says(text) || fast && met(text);
     let column = open.map(|(_, column, _)| column).or_else(parts).filter(|_| !texts(region).any(told))?;
     Some(Doubt::Unsaid { column: shown(&column.heading.text) })
 }

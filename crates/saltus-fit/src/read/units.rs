@@ -52,7 +52,12 @@ pub(super) enum Scale {
     /// A number of joules, as much as a ball has at a height: a mass that nobody knows away from
     /// it.
     Energy { times: f64, over: f64 },
+    /// A degree, or a pressure: what state a ball or a floor was in.
+    State,
 }
+
+/// Units of temperature and of pressure that ball, floor and air are kept at.
+const STATES: [&str; 8] = ["°c", "°f", "degc", "degf", "psi", "bar", "kpa", "atm"];
 
 /// Units of energy, and how many of them make a joule.
 const JOULES: [(&str, f64); 8] = [
@@ -113,7 +118,7 @@ impl Unit {
     pub(super) fn si(self, value: f64) -> f64 {
         match self.scale {
             Scale::Si { times, over } | Scale::Energy { times, over } => value * times / over,
-            Scale::Pixels | Scale::Whole => value,
+            Scale::Pixels | Scale::Whole | Scale::State => value,
             Scale::Percent => value / 100.0,
         }
     }
@@ -125,7 +130,7 @@ impl Unit {
 
     /// Whether only ratios of its numbers have a meaning.
     pub(super) fn unscaled(self) -> bool {
-        !matches!(self.scale, Scale::Si { .. })
+        !matches!(self.scale, Scale::Si { .. } | Scale::State)
     }
 
     /// The units that a line states of all numbers, `Unit: cm`, `Units = cm, s`; none if it states
@@ -179,8 +184,11 @@ impl Unit {
                 return Some(Self::of(dimension, scale));
             }
         }
+        if STATES.contains(&symbol) {
+            return Some(Self { dimension: Dimension::Other, scale: Scale::State });
+        }
         let other = Quantity::ALL.iter().any(|quantity| quantity.scale(text).or(quantity.scale(symbol)).is_some())
-            || ["n", "w", "°c", "°f", "k", "db", "psi", "hpa", "fps", "cm^2", "cm2", "m^2", "mm^2"].contains(&symbol);
+            || ["n", "w", "k", "db", "hpa", "fps", "cm^2", "cm2", "m^2", "mm^2"].contains(&symbol);
         other.then_some(Self::OTHER)
     }
 }

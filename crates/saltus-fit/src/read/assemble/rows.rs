@@ -105,6 +105,10 @@ impl Builder<'_> {
             readings.push(Reading { height: Some(height), ..Reading::new(Event::Release, 0, line) });
         }
         group.retain(|part| !part.is_empty());
+        // A condition that is another in each row tells no groups apart, and the COR may follow it.
+        let follows = |n: &&usize| self.columns.columns[**n].kind == Kind::Setting && !self.apart[**n];
+        let cell = |n: &usize| (shown(&self.columns.columns[*n].heading.text), self.text(row.at, *n).to_owned());
+        let conditions = self.settings.iter().filter(follows).map(cell).filter(|(_, cell)| !cell.is_empty()).collect();
         self.trials.push(Trial {
             label: label.join(", "),
             setting: setting.join(", "),
@@ -114,6 +118,7 @@ impl Builder<'_> {
             timed: None,
             stated: Vec::new(),
             beside: Vec::new(),
+            conditions,
         });
         Ok(self.trials.len() - 1)
     }

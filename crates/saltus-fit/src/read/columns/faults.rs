@@ -211,6 +211,11 @@ impl Columns {
             if region.given {
                 return Err(self.unknown(region, index, &word));
             }
+            // The unit says that it is a condition.
+            if self.columns[index].kind == Kind::Setting && heading.unit.is_some() {
+                self.columns[index].heading.unknown.clear();
+                continue;
+            }
             let cells: Vec<&str> = region.rows.iter().map(|&row| region.cell(row, index)).collect();
             let events = cells.iter().filter_map(|cell| event(cell));
             let (release, impact) =

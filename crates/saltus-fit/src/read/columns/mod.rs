@@ -319,7 +319,11 @@ impl Columns {
                     let value = column.heading.value().cloned();
                     Kind::Value(Value { group, ..value.unwrap_or(plain(what)) })
                 }
-                _ => Kind::Setting,
+                _ => {
+                    // Whether its values repeat or not.
+                    column.heading.unit = None;
+                    Kind::Setting
+                }
             };
         }
         Ok(())
@@ -372,6 +376,19 @@ impl Columns {
         Ok(())
     }
 
+    /// Hundredths beside heights of several trials follow from their mean.
+    fn hundredths_of_repeats(&mut self) {
+        let percent = |c: &Column| c.unit.is_some_and(|unit| unit.scale == Scale::Percent);
+        let high = |v: &Value| v.what == What::Height && v.at == At::Row;
+        let repeated = |(_, c, v): (usize, &Column, &Value)| high(v) && !percent(c) && !v.trial.is_empty();
+        if !self.values().any(repeated) {
+            return;
+        }
+        let alone = |v: &Value| high(v) && v.trial.is_empty() && v.group.is_empty();
+        let found: Vec<usize> = self.values().filter(|(_, c, v)| percent(c) && alone(v)).map(|(n, _, _)| n).collect();
+        found.into_iter().for_each(|index| self.leave(index, Why::Derived));
+    }
+
     /// Two columns of the same readings are a question, unless they say the same.
     fn unique(&mut self, region: &Region<'_>) -> Result<(), TableError> {
         for kind in [Kind::Event, Kind::Number { sure: true }] {
@@ -385,6 +402,7 @@ impl Columns {
             }
         }
         self.unique_shares(region)?;
+        self.hundredths_of_repeats();
         let mut seen: Vec<(usize, Value)> = Vec::new();
         let values: Vec<(usize, Value)> = self.values().map(|(n, _, v)| (n, v.clone())).collect();
         for (index, value) in values {

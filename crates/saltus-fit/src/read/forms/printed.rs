@@ -29,11 +29,16 @@ pub(in crate::read) fn indexed(text: &str) -> Option<String> {
     let width = words(head).len() + 1;
     let rows = (0..lines.len() - head - 1).take_while(|row| counted(head + 1 + row, from + row, width)).count();
     let wide = |n: usize| lines[n].trim().split("  ").filter(|cell| !cell.trim().is_empty()).count();
-    if (head + 1..=head + rows).all(|n| wide(n) == width) {
+    if wide(head) + 1 == width && (head + 1..=head + rows).all(|n| wide(n) == width) {
         return None;
     }
-    // What else is printed is no row of it.
+    // What else is printed is no row of it; what a console is asked, and what it answers to more
+    // that it is asked below, says nothing of it.
+    let asked =
+        |n: usize| ["> ", ">>> ", "In ["].iter().any(|mark| lines[n].starts_with(mark)) || lines[n].trim() == ">";
+    let after = (head + rows..lines.len()).find(|n| asked(*n)).unwrap_or(lines.len());
     let spelt = |n: usize| match n {
+        n if n >= after || n < head && asked(n) => String::new(),
         n if n == head => format!("\t{}", words(n).join("\t")),
         n if n > head && n <= head + rows => {
             // Where nothing was read.

@@ -37,6 +37,12 @@ impl Heading {
         if has(Derived) && !intervals && !relative && !summed {
             return Meaning::Aside(Why::Derived);
         }
+        // What is measured in degrees, or as a pressure, is a condition, whatever it is called.
+        let state = self.unit.is_some_and(|unit| unit.scale == Scale::State) && numbers.bounce.is_empty();
+        let state = state && numbers.trial.is_empty() && !has(Atom::Error) && !has(Goal);
+        if state {
+            return Meaning::Setting;
+        }
         let setting = has(Group)
             && !named
             && !has(Atom::Error)

@@ -59,7 +59,7 @@ pub(super) fn headers(view: View<'_>, row: usize, end: usize) -> Vec<Header> {
     let names = |n: usize| view.cells(n).filter(|cell| !cell.is_empty()).count();
     let titled =
         names(row) == 1 && !one[0].is_empty() && row + 1 < end && names_only(view, row + 1) && names(row + 1) > 1;
-    if of_units(&one) || titled || Unit::listed(&one.join(" ")).is_some() {
+    if of_units(&one) || of_errors(&one) || titled || Unit::listed(&one.join(" ")).is_some() {
         return found;
     }
     let mut push = |names: Vec<String>, next: usize| {
@@ -75,6 +75,15 @@ pub(super) fn headers(view: View<'_>, row: usize, end: usize) -> Vec<Header> {
             found.push(Header { names, at: row, below: next, score });
         }
     };
+    // Below the names their errors may stand, and below these the counts of what a name spans.
+    let errors = Some(row + 1).filter(|&n| n < end && of_errors(&line(n))).map(line);
+    if let Some(errors) = errors {
+        push(with_errors(&one, one.clone(), &errors), row + 2);
+        if let Some(names) = (row + 2 < end).then(|| numbered(view, &one, row + 2)).flatten() {
+            push(with_errors(&one, names, &errors), row + 3);
+        }
+        return found;
+    }
     push(one.clone(), row + 1);
     if let Some(names) = (row + 1 < end).then(|| numbered(view, &one, row + 1)).flatten() {
         push(names, row + 2);
@@ -202,7 +211,12 @@ fn numbered(view: View<'_>, upper: &[String], row: usize) -> Option<Vec<String>>
             return None;
         }
         counted += usize::from(count > 1);
-        names.push(format!("{spanning} {count}"));
+        // Its unit stays behind the slash: `height / m`.
+        let parts = spanning.rsplit_once('/').filter(|(_, unit)| Unit::parse(unit).is_some());
+        names.push(match parts {
+            Some((name, unit)) => format!("{} {count} / {}", name.trim_end(), unit.trim()),
+            None => format!("{spanning} {count}"),
+        });
     }
     (counted > 0 && view.cell(row, 0).is_empty()).then_some(names)
 }
@@ -348,6 +362,28 @@ fn spelt(cell: &str) -> &str {
 
 /// What stands for the unit of a count, in a line of units.
 const UNITLESS: [&str; 9] = ["#", "n", "no.", "nr.", "-", "–", "—", "/", "1"];
+
+/// Whether a line holds errors of reading and nothing else: `±1 °C`, `± 0.01 m`.
+fn of_errors(line: &[String]) -> bool {
+    let error = |cell: &str| {
+        let size = ["±", "+/-", "+-"].iter().find_map(|mark| cell.strip_prefix(mark));
+        size.is_some_and(|size| size.trim_start().starts_with(|c: char| c.is_ascii_digit()))
+    };
+    let mut filled = line.iter().filter(|cell| !cell.is_empty()).peekable();
+    filled.peek().is_some() && filled.all(|cell| error(cell))
+}
+
+/// The names of columns, each with the error that stands below the name in `upper` that spans it.
+fn with_errors(upper: &[String], names: Vec<String>, errors: &[String]) -> Vec<String> {
+    let mut spanning = "";
+    let mut name = |(n, name): (usize, String)| {
+        if upper.get(n).is_some_and(|cell| !cell.is_empty()) {
+            spanning = errors.get(n).map_or("", String::as_str);
+        }
+        if name.is_empty() || spanning.is_empty() { name } else { format!("{name} {spanning}") }
+    };
+    names.into_iter().enumerate().map(&mut name).collect()
+}
 
 /// Whether a line holds units and nothing else.
 pub(super) fn of_units(line: &[String]) -> bool {

@@ -53,6 +53,9 @@ impl Display for Note {
                 write!(f, "sheets left aside, for they hold no table of bounces: {}", sheets.join(", "))
             }
             Self::Filtered { kept, left_out } => write!(f, "{kept} rows kept and {left_out} left out by the filter"),
+            Self::Apart { column } => {
+                write!(f, "the COR differs by '{column}': each of its words has a COR of its own (--group - if not)")
+            }
             Self::Dropped { height_m } => write!(f, "dropped from {height_m} m, as stated"),
             Self::Floor { reading, down } => {
                 let way = if *down { "downwards" } else { "upwards" };

@@ -89,7 +89,7 @@ fn changing(kind: &FindingKind) -> Option<String> {
                 .to_owned()
         }
         FindingKind::AsideDiffers { column, low, high, p } => format!(
-            "the COR differs by '{column}', which was left aside: {:.3} for {}, {:.3} for {} (by chance: p {}); give --group '{column}' if it tells \
+            "the COR differs by '{column}', which tells no groups apart here: {:.3} for {}, {:.3} for {} (by chance: p {}); give --group '{column}' if it tells \
              balls or surfaces apart, --group - if not",
             low.1,
             low.0,
