@@ -86,7 +86,7 @@ pub(super) fn drop(text: &str) -> Option<DropHeight> {
             let begins = after.first().is_some_and(|w| w.is(Atom::Height));
             let placed = Phrase::From.is(&last) || Phrase::At.is(&last) && begins;
             let all = || before.iter().chain(&after);
-            let of_ball = placed && all().any(|w| w.is(Atom::Release)) && all().any(|w| w.is(Atom::Label));
+            let of_ball = placed && all().any(|w| w.is(Atom::Release)) && all().any(names_ball);
             let of_ball = of_ball && beyond && !all().any(|w| turns(w) || matches!(w.kind, Kind::Number(_)));
             let fits = before.iter().all(plain) && (whole || said && !after.iter().any(turns)) || told || of_ball;
             return fits.then_some(height);
@@ -100,6 +100,13 @@ pub(super) fn drop(text: &str) -> Option<DropHeight> {
             unit,
         })
     })
+}
+
+/// Whether a word is what balls are called, or ends in it: `ball`, `Wasserball`.
+pub(super) fn names_ball(word: &Word) -> bool {
+    let spelt = folded(&word.text);
+    let known = word.is(Atom::Label) || word.is(Atom::Group);
+    known && Phrase::Ball.all().iter().any(|ball| spelt.ends_with(ball))
 }
 
 /// A text whose number with its error in brackets, and the unit behind these, is the number with

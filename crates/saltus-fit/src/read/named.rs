@@ -48,7 +48,9 @@ pub(super) fn between(cell: &str) -> Option<usize> {
         WordKind::Number(_) | WordKind::Ordinal(_) => true,
         _ => false,
     };
-    let signs = |c: char| c.is_alphanumeric() || matches!(c, ' ' | '-' | '–' | '—' | '→' | '>' | '&' | '#' | '.');
+    let signs = |c: char| {
+        c.is_alphanumeric() || matches!(c, ' ' | '-' | '–' | '—' | '→' | '>' | '&' | '#' | '.' | '°' | 'º' | 'ª')
+    };
     let named = cell.chars().all(signs) && words.iter().enumerate().all(|(n, word)| joins(n) || of_bounces(word));
     (named && first > 0 && second == first + 1).then_some(first)
 }

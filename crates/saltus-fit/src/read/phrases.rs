@@ -74,10 +74,20 @@ pub(super) enum Phrase {
     Chart,
     /// On the way to the floor, beside what is on the way up.
     Down,
+    /// A contact begins,
+    Begins,
+    /// and ends.
+    Ends,
+    /// What a ball runs through and blocks.
+    Gate,
+    /// Before the height that a ball came up to.
+    UpTo,
+    /// Before what is let loose: the verb parts in two.
+    Lets,
 }
 
 impl Phrase {
-    const ALL: [(&'static str, Self); 33] = [
+    const ALL: [(&'static str, Self); 38] = [
         ("missing", Self::Missing),
         ("about", Self::About),
         ("half", Self::Half),
@@ -111,6 +121,11 @@ impl Phrase {
         ("according", Self::According),
         ("chart", Self::Chart),
         ("down", Self::Down),
+        ("begins", Self::Begins),
+        ("ends", Self::Ends),
+        ("gate", Self::Gate),
+        ("up to", Self::UpTo),
+        ("lets", Self::Lets),
     ];
 
     /// The phrases of this kind, in the order of the file.

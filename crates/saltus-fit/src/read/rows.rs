@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 
 use super::aside::{LeftAside, Part, Why};
 use super::cell::Cell;
-use super::columns::{Columns, Kind};
+use super::columns::{Column, Columns, Kind};
 use super::grid::shown;
 use super::heading::{Heading, Meaning, Role, Value, What};
 use super::judged;
@@ -86,6 +86,18 @@ pub(super) fn sifted(region: &Region<'_>, columns: &Columns) -> Result<Rows, Tab
                 if values && is_floor(&heading) {
                     found.floor =
                         columns.values().find(|(n, _, _)| region.view.is_number(row, *n)).map(|(n, _, _)| (row, n));
+                    continue;
+                }
+                // A number of another kind than those above it is none of theirs: `Ball diameter`
+                // below times.
+                let other = |(n, c, _): (usize, &Column, &Value)| match region.view.read(row, n) {
+                    Cell::Number(m) => {
+                        m.unit.zip(c.heading.unit).is_some_and(|(own, of)| own.dimension != of.dimension)
+                    }
+                    _ => false,
+                };
+                if columns.values().any(other) && bounce(region.cell(row, column)).is_none() {
+                    found.aside.push(leave(Why::Note, Part::Text));
                     continue;
                 }
                 // What is a number elsewhere and words here sums the others up, or is no number.

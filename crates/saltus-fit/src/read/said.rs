@@ -5,6 +5,7 @@ use saltus_bounce::units::Quantity;
 
 use super::ReadOptions;
 use super::cell::Cell;
+use super::clause;
 use super::columns::{Column, Columns, Kind as Of};
 use super::grid::shown;
 use super::heading::{At, Heading, Role, Value, What};
@@ -36,11 +37,9 @@ fn ball_and_wall(text: &str) -> bool {
     names_wall(text) && names_ball(text)
 }
 
-/// Whether a text names a ball: `ball`, `Wasserball`.
+/// Whether a text names a ball.
 fn names_ball(text: &str) -> bool {
-    let ball = |word: &str| Phrase::Ball.all().iter().any(|ball| word.ends_with(ball));
-    let named = |word: &Word| word.is(Atom::Label) || word.is(Atom::Group);
-    split(text).iter().any(|word| named(word) && ball(&folded(&word.text)))
+    split(text).iter().any(clause::names_ball)
 }
 
 /// Whether a text says that something bounces, or is dropped.
@@ -119,7 +118,9 @@ fn turned_round(region: &Region<'_>, columns: &Columns) -> bool {
 /// are signs of a bounce.
 pub(super) fn unsaid(region: &Region<'_>, columns: &Columns, options: &ReadOptions) -> Option<Doubt> {
     let answered = options.column.is_some() || options.drop.is_some() || options.sheet.is_some();
-    if answered || region.given || region.chosen || turned_round(region, columns) {
+    // A ball that blocks a gate on its way down and up has turned round below it.
+    let gated = || columns.columns.iter().any(|c| c.turned) && texts(region).any(names_ball);
+    if answered || region.given || region.chosen || turned_round(region, columns) || gated() {
         return None;
     }
     let length = |c: &Column| {

@@ -93,6 +93,7 @@ pub(super) fn split(text: &str) -> Vec<Word> {
         words.push(Word { text, kind });
     }
     fallen(&mut words);
+    let_loose(&mut words);
     under_a_tool(&mut words);
     lettered(&mut words);
     // A number before a word is its place in an order, if none follows: '1. Rebound'.
@@ -158,6 +159,14 @@ fn fallen(words: &mut [Word]) {
         if falls {
             words[n - 2].kind = Kind::Known(&[Atom::Lost]);
         }
+    }
+}
+
+/// What is let loose is released, though other words stand between: `we laten een bal los`.
+fn let_loose(words: &mut [Word]) {
+    let Some(at) = words.iter().position(|word| Phrase::Lets.is(&folded(&word.text))) else { return };
+    if let Some(loose) = words[at + 1..].iter_mut().find(|word| folded(&word.text) == "los") {
+        loose.kind = Kind::Known(&[Atom::Release]);
     }
 }
 

@@ -77,6 +77,12 @@ impl Builder<'_> {
             None => self.sigma(row, column)?,
         };
         let mut value = unit.si(measured.value);
+        if own.turned {
+            if value <= 0.0 {
+                return wrong(format!("'{text}' is no time that a gate is blocked for"), "correct the cell");
+            }
+            return Ok(Some((1.0 / value, sigma.map(|sigma| sigma / (value * value)))));
+        }
         if own.holds(What::Height) {
             let zero = own.unit.map_or(own.zero, |named| named.si(own.zero));
             // The difference in the column's own unit is exact where the sum of conversions is not.

@@ -8,7 +8,7 @@ use std::cell::OnceCell;
 use std::collections::{HashMap, HashSet};
 
 use super::aside::{LeftAside, Part, Why};
-use super::columns::{Columns, Kind};
+use super::columns::{Column, Columns, Kind};
 use super::grid::shown;
 use super::heading::{At, Role, What};
 use super::layout::{Layout, Track, layout, tracks};
@@ -215,7 +215,7 @@ fn unscaled(
     if !columns.unscaled || matches!(layout, Layout::Samples { .. }) {
         return Ok(());
     }
-    let pixels = |unit: Option<Unit>| unit.is_some_and(|u| u.scale == Scale::Pixels);
+    let pixels = |unit: Option<Unit>| unit.is_some_and(|u| u.scale == Scale::Pixels && u != Unit::SPEED);
     let place = columns.values().find(|(_, c, v)| {
         pixels(c.unit) && v.position && c.zero == 0.0 && options.zero.is_none() && region.zero.is_none()
     });
@@ -429,9 +429,11 @@ fn percent(region: &Region<'_>, columns: &Columns, table: &mut Table) -> Result<
     Ok(())
 }
 
-/// Energies as heights: of each group, whose mass is one, the largest counts as a metre.
+/// Energies as heights, and times at a gate as speeds: of each group, whose mass is one, the largest
+/// counts as a metre.
 fn energies(columns: &Columns, trials: &mut [Trial]) {
-    if !columns.values().any(|(_, c, _)| c.unit.is_some_and(|unit| matches!(unit.scale, Scale::Energy { .. }))) {
+    let energy = |c: &Column| c.unit.is_some_and(|unit| matches!(unit.scale, Scale::Energy { .. }));
+    if !columns.values().any(|(_, c, _)| energy(c) || c.turned) {
         return;
     }
     let mut most: HashMap<String, f64> = HashMap::new();

@@ -4,6 +4,7 @@
 mod energies;
 mod faults;
 mod frames;
+mod gates;
 mod pairs;
 mod shares;
 
@@ -65,6 +66,8 @@ pub(super) struct Column {
     /// What its scale reads at the floor, and which way it counts.
     pub(super) zero: f64,
     pub(super) sign: f64,
+    /// Its numbers are turned over: the longer, the slower.
+    pub(super) turned: bool,
 }
 
 impl Column {
@@ -125,6 +128,7 @@ impl Columns {
         found.naming(region);
         found.spanning(region);
         found.placed();
+        found.coupled(region);
         found.deltas(region);
         found.capital(region);
         found.letters();
@@ -197,7 +201,7 @@ impl Columns {
             }
             Meaning::Empty => Kind::Aside,
         };
-        self.columns.push(Column { kind, unit: heading.unit, heading, zero: 0.0, sign: 1.0 });
+        self.columns.push(Column { kind, unit: heading.unit, heading, zero: 0.0, sign: 1.0, turned: false });
     }
 
     /// The indices of all columns of a kind.

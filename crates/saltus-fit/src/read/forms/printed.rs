@@ -34,11 +34,11 @@ pub(in crate::read) fn indexed(text: &str) -> Option<String> {
     }
     // What else is printed is no row of it; what a console is asked, and what it answers to more
     // that it is asked below, says nothing of it.
-    let asked =
-        |n: usize| ["> ", ">>> ", "In ["].iter().any(|mark| lines[n].starts_with(mark)) || lines[n].trim() == ">";
+    let prompts = [">", "In ["];
+    let asked = |n: usize| prompts.iter().any(|mark| lines[n].trim_start_matches(['#', ' ']).starts_with(mark));
     let after = (head + rows..lines.len()).find(|n| asked(*n)).unwrap_or(lines.len());
     let spelt = |n: usize| match n {
-        n if n >= after || n < head && asked(n) => String::new(),
+        n if n >= after => String::new(),
         n if n == head => format!("\t{}", words(n).join("\t")),
         n if n > head && n <= head + rows => {
             // Where nothing was read.

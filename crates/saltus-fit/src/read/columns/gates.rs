@@ -1,0 +1,136 @@
+//! Pairs of columns that say together what neither says alone: how long a gate is blocked on the
+//! way down and up, when a contact begins and ends, from where and up to where a ball came.
+
+use super::{Column, Columns, Kind, plain};
+use crate::read::aside::Why;
+use crate::read::grid::shown;
+use crate::read::heading::{At, What};
+use crate::read::phrases::Phrase;
+use crate::read::region::Region;
+use crate::read::units::{Dimension, Unit};
+use crate::read::vocabulary::{Atom, folded};
+use crate::read::words::pieces;
+use crate::statistics::median;
+
+/// The words of a heading in plain letters.
+fn words(column: &Column) -> Vec<String> {
+    pieces(&column.heading.text).iter().map(|word| folded(word)).collect()
+}
+
+/// Whether the only word of a heading, beside its unit, is of this kind.
+fn only(column: &Column, phrase: Phrase) -> bool {
+    let name = folded(column.heading.text.split(['(', '[']).next().unwrap_or_default());
+    phrase.is(name.trim())
+}
+
+impl Columns {
+    /// What pairs of columns say together.
+    pub(super) fn coupled(&mut self, region: &Region<'_>) {
+        self.gates(region);
+        self.contacts(region);
+        self.from_and_up_to(region);
+        self.until_rest(region);
+    }
+
+    /// The only height beside the time until all is quiet, of several rows: from there each drop
+    /// was let go.
+    fn until_rest(&mut self, region: &Region<'_>) {
+        let read = |what: What| {
+            let mut found = self.values().filter(move |(_, c, v)| v.what == what && c.heading.unknown.is_empty());
+            found.next().filter(|(_, _, v)| v.at == At::Row && v.trial.is_empty()).filter(|_| found.next().is_none())
+        };
+        let total = read(What::Total).filter(|(_, c, _)| c.heading.has(Atom::Rest)).is_some();
+        let height = read(What::Height).map(|(n, _, _)| n);
+        let alone = total && self.values().count() == 2 && region.drop.is_none() && region.rows.len() > 1;
+        if let Some(index) = height.filter(|_| alone) {
+            self.becomes(index, What::Height, At::Release);
+        }
+    }
+
+    /// The only two columns that fit, the first as `one` and the other as `other`.
+    fn pair(&self, one: impl Fn(&Column) -> bool, other: impl Fn(&Column) -> bool) -> Option<(usize, usize)> {
+        let only = |fits: &dyn Fn(&Column) -> bool| {
+            let mut found = (0..self.columns.len()).filter(|&n| fits(&self.columns[n]));
+            found.next().filter(|_| found.next().is_none())
+        };
+        only(&one).zip(only(&other)).filter(|(one, other)| one != other)
+    }
+
+    /// A column is what it is called beside another one, whatever else its words say.
+    fn becomes(&mut self, index: usize, what: What, at: At) {
+        let name = shown(&self.columns[index].heading.text);
+        self.aside.retain(|aside| aside.name != name);
+        self.columns[index].heading.unknown.clear();
+        let mut value = plain(what);
+        value.at = at;
+        self.columns[index].kind = Kind::Value(value);
+    }
+
+    /// `Gate time down (ms)` beside `Gate time up (ms)`: a ball of one size blocks a gate for as
+    /// long as it is slow, so that the speeds are to each other as the times turned over.
+    fn gates(&mut self, region: &Region<'_>) {
+        let timed = |c: &Column| c.unit.is_some_and(|unit| unit.dimension == Dimension::Time);
+        let named = region.aside.iter().any(|aside| names_gate(&aside.name)) || names_gate(region.view.grid.name);
+        let gate = |c: &Column| timed(c) && (named || names_gate(&c.heading.text));
+        let down = |c: &Column| c.heading.has(Atom::Before) || words(c).iter().any(|word| Phrase::Down.is(word));
+        let rises = |c: &Column| words(c).iter().any(|word| Phrase::UpTo.is(word));
+        let up = |c: &Column| (c.heading.has(Atom::After) || rises(c)) && !down(c);
+        let Some((before, after)) = self.pair(|c| gate(c) && down(c), |c| gate(c) && up(c)) else { return };
+        if self.columns[before].unit != self.columns[after].unit || self.values().count() > 2 {
+            return;
+        }
+        for (index, at) in [(before, At::Before), (after, At::After)] {
+            self.becomes(index, What::Speed, at);
+            self.columns[index].unit = Some(Unit::SPEED);
+            self.columns[index].turned = true;
+        }
+    }
+
+    /// `t_on (ms)` beside `t_off (ms)`, whose names differ in that word alone: each contact begins
+    /// after the one before has ended, and is far shorter than what lies between.
+    fn contacts(&mut self, region: &Region<'_>) {
+        let timed = |c: &Column| c.unit.is_some_and(|unit| unit.dimension == Dimension::Time);
+        let has = |c: &Column, phrase: Phrase| timed(c) && words(c).iter().any(|word| phrase.is(word));
+        let begins = |c: &Column| has(c, Phrase::Begins) && !has(c, Phrase::Ends);
+        let ends = |c: &Column| has(c, Phrase::Ends) && !has(c, Phrase::Begins);
+        let Some((on, off)) = self.pair(begins, ends) else { return };
+        let bare = |n: usize| {
+            let words = words(&self.columns[n]).into_iter();
+            words.filter(|word| !Phrase::Begins.is(word) && !Phrase::Ends.is(word)).collect::<Vec<_>>()
+        };
+        if bare(on) != bare(off) || self.columns[on].unit != self.columns[off].unit {
+            return;
+        }
+        let times = |n: usize| region.rows.iter().map(|&row| region.view.number(row, n)).collect::<Option<Vec<f64>>>();
+        let Some((begun, ended)) = times(on).zip(times(off)) else { return };
+        let mut lasted: Vec<f64> = ended.iter().zip(&begun).map(|(end, begin)| end - begin).collect();
+        let mut flown: Vec<f64> = begun.iter().skip(1).zip(&ended).map(|(begin, end)| begin - end).collect();
+        let ordered = lasted.iter().chain(&flown).all(|time| *time > 0.0);
+        let (Some(contact), Some(flight)) = (median(&mut lasted), median(&mut flown)) else { return };
+        if ordered && contact < SHORT * flight {
+            self.becomes(on, What::Time, At::Row);
+            self.leave(off, Why::Elsewhere);
+        }
+    }
+
+    /// `from` beside `up to`: the heights of a drop and of its rebound.
+    fn from_and_up_to(&mut self, region: &Region<'_>) {
+        let height = |c: &Column| c.unit.is_none_or(|unit| unit.dimension == Dimension::Length);
+        let from = |c: &Column| height(c) && only(c, Phrase::From);
+        let to = |c: &Column| height(c) && only(c, Phrase::UpTo);
+        let Some((from, to)) = self.pair(from, to) else { return };
+        let number = |n: usize| region.rows.iter().any(|&row| region.view.is_number(row, n));
+        if number(from) && number(to) {
+            self.becomes(from, What::Height, At::Release);
+            self.becomes(to, What::Height, At::Row);
+        }
+    }
+}
+
+/// A contact lasts less than this part of the flight after it.
+const SHORT: f64 = 0.5;
+
+/// Whether a text names a gate that a ball runs through.
+fn names_gate(text: &str) -> bool {
+    pieces(text).iter().any(|word| Phrase::Gate.is(&folded(word)))
+}
