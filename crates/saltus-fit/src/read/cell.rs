@@ -127,9 +127,19 @@ pub(super) fn respelt(cell: &str) -> Option<String> {
 /// Readings of one event agree to this factor: `63-65` is a range of them, `5-11` is not.
 pub(super) const RANGE: f64 = 1.5;
 
+/// The ends of a range in words, `between 63 and 65 cm`.
+fn between(text: &str) -> Option<(&str, &str)> {
+    let (first, rest) = text.split_once(' ')?;
+    let range = meanings(&folded(first)).is_some_and(|atoms| atoms.contains(&Atom::Between));
+    let and = rest.split(' ').filter(|_| range).find(|word| Phrase::And.is(&folded(word)))?;
+    let at = and.as_ptr() as usize - rest.as_ptr() as usize;
+    Some((&rest[..at], &rest[at + and.len()..]))
+}
+
 /// The middle of a range, `63-65 cm` or `63 to 65`, and half its width for its error.
 fn range(text: &str, comma: bool) -> Option<Measured> {
-    let (low, high) = ["–", "—", " to ", " bis ", "..", "-"].iter().find_map(|mark| text.split_once(mark))?;
+    let marked = || ["–", "—", " to ", " bis ", "..", "-"].iter().find_map(|mark| text.split_once(mark));
+    let (low, high) = between(text).or_else(marked)?;
     let plain = |text: &str| lengths(text.trim(), comma).ok().flatten();
     let (low, high) = (plain(low)?, plain(high)?);
     let unit = high.unit.or(low.unit);

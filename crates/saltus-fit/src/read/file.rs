@@ -339,6 +339,8 @@ fn sheets(name: &str, parts: Vec<Part>, options: &ReadOptions) -> Result<Table, 
         };
         return Err(first.unwrap_or_else(none));
     }
+    let computed = pool::computed(&mut found);
+    aside.extend(computed.into_iter().map(|(label, _)| (label, Why::Computed)));
     let ratios = pool::measured(&mut found, |(_, table)| table);
     aside.extend(ratios.into_iter().map(|(label, _)| (label, Why::Derived)));
     let drops = told_apart(&mut found);

@@ -25,7 +25,7 @@ use super::phrases::Phrase;
 use super::sequence::LEVEL;
 use super::units::{Dimension, Unit};
 use super::vocabulary::{Atom, folded};
-use super::words::ordinal;
+use super::words::{ordinal, split};
 
 /// The text with tabs between the cells of such a table; `None` if it holds none.
 pub(super) fn table(text: &str) -> Option<String> {
@@ -190,9 +190,11 @@ fn prose(line: &str) -> bool {
     told(line) && silent(line)
 }
 
-/// Whether a line measures nothing: no number in it has a unit.
+/// Whether a line measures nothing: no number in it has a unit, but one that is an error of reading.
 fn silent(line: &str) -> bool {
-    let unit = |part: &Part<'_>| matches!(cell::read(part.number, false), Cell::Number(m) if m.unit.is_some());
+    let error = |part: &Part<'_>| split(part.words).iter().any(|word| word.is(Atom::Error));
+    let unit =
+        |part: &Part<'_>| matches!(cell::read(part.number, false), Cell::Number(m) if m.unit.is_some()) && !error(part);
     !line.contains(['\t', '|', ';']) && !parts(line).0.iter().any(unit)
 }
 

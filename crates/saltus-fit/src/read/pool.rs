@@ -5,7 +5,7 @@ use super::heading::Heading;
 use super::written::{rounds_to, step};
 use super::{Event, Metadata, Table, Trial};
 use crate::error::TableError;
-use crate::finding::{Note, Parts, Remark, Warning};
+use crate::finding::{Doubt, Note, Parts, Remark, Warning};
 use crate::quantity::Ball;
 
 /// Tells files apart whose names are of different balls or surfaces, and recordings from readings
@@ -82,6 +82,46 @@ fn means(trials: &[Trial], drops: &[(f64, f64)]) -> bool {
         same.len() > 1 && rounds_to(mean, rebound, of_rebounds)
     };
     trials.len() > 1 && trials.iter().all(|trial| drop(trial).is_some_and(mean))
+}
+
+/// Takes out sheets of heights that follow from the flights of another sheet by g T²/8, as programs
+/// work them out. Flights that somebody takes for those heights are of a ball, whatever the sheets
+/// say of it.
+pub(super) fn computed(parts: &mut Vec<(String, Table)>) -> Vec<(String, Table)> {
+    let follows = |heights: &Table, times: &Table| {
+        let pairs = || heights.trials.iter().zip(&times.trials);
+        heights.trials.len() == times.trials.len() && pairs().all(|(one, other)| flown(one, other))
+    };
+    let pairs = (0..parts.len()).flat_map(|of| (0..parts.len()).map(move |from| (of, from)));
+    let found: Vec<(usize, usize)> =
+        pairs.filter(|&(of, from)| of != from && follows(&parts[of].1, &parts[from].1)).collect();
+    for (_, from) in &found {
+        parts[*from].1.doubts.retain(|doubt| !matches!(doubt, Doubt::Unsaid { .. }));
+    }
+    let mut at = 0..;
+    let of = |_: &(String, Table)| at.next().is_some_and(|n| found.iter().any(|(of, _)| *of == n));
+    let (heights, others) = std::mem::take(parts).into_iter().partition(of);
+    *parts = others;
+    heights
+}
+
+/// Gravity that programs work heights out with, m/s².
+const GRAVITY: f64 = 9.81;
+
+/// Heights that are worked out differ by less than this part of them from what they follow from.
+const WORKED_OUT: f64 = 0.005;
+
+/// Whether the heights of a trial are those of the flights of another one, two or more, under the
+/// gravity of the earth.
+fn flown(heights: &Trial, times: &Trial) -> bool {
+    let apexes: Vec<f64> =
+        heights.readings.iter().filter(|r| r.event == Event::Apex).filter_map(|r| r.height).collect();
+    let contacts: Vec<f64> =
+        times.readings.iter().filter(|r| r.event == Event::Contact).filter_map(|r| r.time).collect();
+    let timed = heights.readings.iter().any(|r| r.time.is_some()) || times.readings.iter().any(|r| r.height.is_some());
+    let flights = contacts.windows(2).map(|pair| pair[1] - pair[0]);
+    let alike = |(flight, height): (f64, &f64)| (GRAVITY * flight * flight / 8.0 / height - 1.0).abs() < WORKED_OUT;
+    !timed && apexes.len() > 1 && contacts.len() == apexes.len() + 1 && flights.zip(&apexes).all(alike)
 }
 
 /// Whether each trial is one height, the mean of the rebounds of other trials of its condition, as it
