@@ -136,6 +136,29 @@ proptest! {
     }
 }
 
+/// Who did something else from there as well states no release, and 'from' beside 'to' says
+/// nothing of a bounce.
+#[test]
+fn what_may_be_of_something_else_is_not_trusted() {
+    for text in [
+        "We dropped the ball and recorded it from 2 m\n\nTrial 1: 64 cm\nTrial 2: 63 cm\nTrial 3: 64 cm\n",
+        "from (cm),to (cm)\n100,64\n80,51\n60,38\n",
+    ] {
+        let report = read(text).map(|table| Fit::new().run(&table).unwrap());
+        assert!(report.is_err() || report.is_ok_and(|r| r.verdict() != saltus_fit::Verdict::Trusted), "{text}");
+    }
+}
+
+/// A range of readings in words has its middle for a reading.
+#[test]
+fn a_range_may_be_in_words() {
+    for (between, and) in [("between", "and"), ("entre", "e"), ("zwischen", "und")] {
+        let row = |h: f64| format!("{h};{between} {:.1} {and} {:.1}\n", 0.64 * h - 1.0, 0.64 * h + 1.0);
+        let found = trusted(&format!("drop (cm);rebound (cm)\n{}", [60.0, 80.0, 100.0, 120.0].map(row).concat()));
+        assert!(near(found, 0.8, 0.003), "{between}: {found}");
+    }
+}
+
 /// Contacts are shorter than the flights between them: of two times that are as far apart as the
 /// next ones nothing tells which are the contacts.
 #[test]

@@ -175,8 +175,10 @@ proptest! {
         let report = fit(&format!("{name},Drop (in),Rebound (in)\n{rows}\n"));
         let found: Vec<f64> = report.groups().iter().map(|g| g.report.cor().unwrap().value).collect();
         prop_assert!(matches!(found.as_slice(), [a, b] if (a - e).abs() < 4e-3 && (b - e - 0.1).abs() < 4e-3), "{}", report);
+        // Below any other name too, since the COR differs by them.
         let other = fit(&format!("By,Drop (in),Rebound (in)\n{rows}\n"));
-        prop_assert_eq!(other.verdict(), Verdict::Doubtful, "{}", other);
+        let found: Vec<f64> = other.groups().iter().map(|g| g.report.cor().unwrap().value).collect();
+        prop_assert!(matches!(found.as_slice(), [a, b] if (a - e).abs() < 4e-3 && (b - e - 0.1).abs() < 4e-3), "{}", other);
     }
 
     /// Names and numbers that colons part, several in a line.

@@ -85,11 +85,17 @@ pub(super) fn drop(text: &str) -> Option<DropHeight> {
             let last = before.last().map(|w| folded(&w.text)).unwrap_or_default();
             let begins = after.first().is_some_and(|w| w.is(Atom::Height));
             let placed = Phrase::From.is(&last) || Phrase::At.is(&last) && begins;
+            let follows = from.is_some_and(|words| words.iter().all(|w| plain(w) && !w.is(Atom::Tool)));
+            let mut next = after.iter().filter(|w| !w.is(Atom::Height) && !w.is(Atom::Filler));
+            let leads = next.next().is_some_and(|w| w.is(Atom::Release));
             let all = || before.iter().chain(&after);
-            let of_ball = placed && all().any(|w| w.is(Atom::Release)) && all().any(names_ball);
-            let of_ball = of_ball && beyond && !all().any(|w| turns(w) || matches!(w.kind, Kind::Number(_)));
+            let of_ball = placed && (follows || leads) && beyond && all().any(names_ball);
+            let of_ball = of_ball && !all().any(|w| turns(w) || matches!(w.kind, Kind::Number(_)));
+            // Something else was done as well, and that from there: `dropped it and filmed it from`.
+            let and = |w: &Word| Phrase::And.is(&folded(&w.text));
+            let other = from.is_some_and(|words| Phrase::From.is(&last) && words.iter().any(and));
             let fits = before.iter().all(plain) && (whole || said && !after.iter().any(turns)) || told || of_ball;
-            return fits.then_some(height);
+            return (fits && !other).then_some(height);
         }
         let (value, before) = last_number(clause.trim_end())?;
         let heading = Heading::parse(before);
@@ -125,7 +131,13 @@ fn without_error(text: &str) -> Cow<'_, str> {
 pub(super) fn clauses(text: &str) -> impl Iterator<Item = &str> {
     // Blanks beside each other part what stands in one line: `Floor: gym   Drop height = 1 m`.
     let parts = text.split([';', '!']).flat_map(|part| part.split(", ")).flat_map(|part| part.split(". "));
-    parts.flat_map(|part| part.split("  ")).filter(|part| !part.is_empty())
+    parts.flat_map(parted).filter(|part| !part.is_empty())
+}
+
+/// What blanks beside each other part, where several parts state something by name.
+fn parted(part: &str) -> Vec<&str> {
+    let stated = part.split("  ").filter(|part| part.contains([':', '='])).count() > 1;
+    if stated { part.split("  ").collect() } else { vec![part] }
 }
 
 /// The parts of a title that dashes tell apart, `Golf ball - dropped from 1 m`, each up to a remark
@@ -277,6 +289,12 @@ mod tests {
             ("Rebound of spheres dropped from 80 cm (predicted)", None, None),
             ("Bollen släpptes från 2,00 m", None, Some(2.0)),
             ("Zorb dropped the ball beside a 2 m rule", None, None),
+            ("We dropped the ball and recorded it from 2 m", None, None),
+            ("We dropped the ball and filmed it from 2 m", None, None),
+            ("Wir haben den Ball immer aus 1,50 m fallen lassen", None, Some(1.5)),
+            ("We laten een stuiterbal los op 1,60 m hoogte en lezen af", None, Some(1.6)),
+            ("Ball: Spalding   Drop height = 72 cm", None, Some(0.72)),
+            ("Die Fallhöhe war (120,0 ± 0,5) cm", None, Some(1.2)),
             ("Zorb dropped a ball of 5 cm", None, None),
             ("Zorb dropped the wobble from 2 m", None, None),
         ] {

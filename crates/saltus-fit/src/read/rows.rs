@@ -96,7 +96,9 @@ pub(super) fn sifted(region: &Region<'_>, columns: &Columns) -> Result<Rows, Tab
                     }
                     _ => false,
                 };
-                if columns.values().any(other) && bounce(region.cell(row, column)).is_none() {
+                // Elsewhere numbers stand in place of its name.
+                let counted = || region.rows.iter().any(|&row| region.view.is_number(row, column));
+                if columns.values().any(other) && bounce(region.cell(row, column)).is_none() && counted() {
                     found.aside.push(leave(Why::Note, Part::Text));
                     continue;
                 }

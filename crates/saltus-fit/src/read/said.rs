@@ -53,6 +53,12 @@ fn says(text: &str) -> bool {
     if hits && names_ball(text) && words.iter().any(|word| word.is(Atom::Floor)) {
         return true;
     }
+    // So does what is let go and then hits.
+    let lower = folded(text);
+    let spelt = |phrase: &&&str| phrase.contains(' ') && lower.contains(**phrase);
+    if hits && Phrase::LetGo.all().iter().any(|phrase| spelt(&phrase)) {
+        return true;
+    }
     words.iter().any(|word| {
         let spelt = folded(&word.text);
         let (plain, atoms) = match word.kind {
@@ -130,7 +136,10 @@ pub(super) fn unsaid(region: &Region<'_>, columns: &Columns, options: &ReadOptio
     // A sheet may name the height of release.
     let named = region.view.grid.tab.is_some_and(|tab| Quantity::Length.parse(tab).is_ok());
     let high = named || read().any(|(_, c, v)| v.what == What::Height && length(c));
-    let pair = |c: &Column, at: At| at == At::Release && (c.heading.has(Atom::Before) || c.heading.has(Atom::Release));
+    let from = |c: &Column| c.of_words(Phrase::From) && !c.heading.has(Atom::Height);
+    let pair = |c: &Column, at: At| {
+        at == At::Release && (c.heading.has(Atom::Before) || c.heading.has(Atom::Release) || from(c))
+    };
     // A flight lasts as long as its height says, whatever flies.
     let timed = read().any(|(_, _, v)| v.what == What::Time && v.at == At::Row);
     let spelt = |c: &Column| c.heading.text.contains('_');

@@ -162,10 +162,18 @@ fn fallen(words: &mut [Word]) {
     }
 }
 
+/// Whether something is let loose in a text.
+pub(super) fn lets_loose(text: &str) -> bool {
+    folded(text).contains(LOOSE) && split(text).iter().any(|word| word.is(Atom::Release))
+}
+
+/// The part of a verb that stands behind what is let loose.
+const LOOSE: &str = "los";
+
 /// What is let loose is released, though other words stand between: `we laten een bal los`.
 fn let_loose(words: &mut [Word]) {
     let Some(at) = words.iter().position(|word| Phrase::Lets.is(&folded(&word.text))) else { return };
-    if let Some(loose) = words[at + 1..].iter_mut().find(|word| folded(&word.text) == "los") {
+    if let Some(loose) = words[at + 1..].iter_mut().find(|word| folded(&word.text) == LOOSE) {
         loose.kind = Kind::Known(&[Atom::Release]);
     }
 }

@@ -17,10 +17,12 @@ fn words(column: &Column) -> Vec<String> {
     pieces(&column.heading.text).iter().map(|word| folded(word)).collect()
 }
 
-/// Whether the only word of a heading, beside its unit, is of this kind.
-fn only(column: &Column, phrase: Phrase) -> bool {
-    let name = folded(column.heading.text.split(['(', '[']).next().unwrap_or_default());
-    phrase.is(name.trim())
+impl Column {
+    /// Whether its heading is words of this kind and nothing else, beside its unit.
+    pub(in crate::read) fn of_words(&self, phrase: Phrase) -> bool {
+        let name = folded(self.heading.text.split(['(', '[']).next().unwrap_or_default());
+        phrase.is(name.trim())
+    }
 }
 
 impl Columns {
@@ -116,8 +118,8 @@ impl Columns {
     /// `from` beside `up to`: the heights of a drop and of its rebound.
     fn from_and_up_to(&mut self, region: &Region<'_>) {
         let height = |c: &Column| c.unit.is_none_or(|unit| unit.dimension == Dimension::Length);
-        let from = |c: &Column| height(c) && only(c, Phrase::From);
-        let to = |c: &Column| height(c) && only(c, Phrase::UpTo);
+        let from = |c: &Column| height(c) && c.of_words(Phrase::From);
+        let to = |c: &Column| height(c) && c.of_words(Phrase::UpTo);
         let Some((from, to)) = self.pair(from, to) else { return };
         let number = |n: usize| region.rows.iter().any(|&row| region.view.is_number(row, n));
         if number(from) && number(to) {

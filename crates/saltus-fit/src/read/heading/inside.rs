@@ -4,7 +4,7 @@
 use super::super::phrases::Phrase;
 use super::super::units::{Dimension, Scale, Unit};
 use super::super::vocabulary::{Atom, folded, meanings};
-use super::super::words::{Kind, Word, split};
+use super::super::words::{Kind, Word, lets_loose, split};
 
 /// A height of release that a heading or a title states.
 #[derive(Clone, Debug, PartialEq)]
@@ -109,8 +109,9 @@ pub(in crate::read) fn released(text: &str) -> Option<(DropHeight, &str, &str)> 
         let counted = value.fract() == 0.0 && value <= COUNTED && is(word, Atom::Trial);
         let from = Phrase::From.is(word);
         let parts = [&text[..at], &after[end..]];
-        let word_of_release =
-            |part: &&str| folded(part).split(|c: char| !c.is_alphanumeric()).any(|word| is(word, Atom::Release));
+        let word_of_release = |part: &&str| {
+            folded(part).split(|c: char| !c.is_alphanumeric()).any(|word| is(word, Atom::Release)) || lets_loose(part)
+        };
         let written = format!("{} {}", &text[at..at + digits], &after[..end]);
         let fits = length && value > 0.0 && !counted && (from || parts.iter().any(word_of_release));
         fits.then_some((DropHeight { text: written, value, unit }, parts[0], parts[1]))
