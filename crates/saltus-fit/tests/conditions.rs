@@ -157,3 +157,21 @@ fn words_that_the_cor_does_not_differ_by_part_nothing() {
     let text = format!("{head}{rows}");
     assert!((trusted(&text) - 0.7).abs() < 0.01 && fit(&text).groups().is_empty());
 }
+
+/// The temperature of a room, which hardly changes from drop to drop, parts nothing, whatever its
+/// unit looks like; a ball that was cooled and warmed is a condition.
+#[test]
+fn the_temperature_of_a_room_sets_nothing() {
+    for (name, warmth, parts) in [
+        ("temp_C", [21.0, 22.0], false),
+        ("Temp (°C)", [22.5, 23.1], false),
+        ("Raumtemperatur (°C)", [19.0, 21.5], false),
+        ("temperature", [20.0, 22.0], false),
+        ("temp_C", [5.0, 60.0], true),
+        ("temperature (°C)", [20.0, 24.0], true),
+    ] {
+        let rows = (0..12).map(|n| format!("{n},{},150,{}\n", warmth[n % 2], rebound(0.7, n)));
+        let text = format!("id,{name},drop_cm,rebound_cm\n{}", rows.collect::<String>());
+        assert_eq!(fit(&text).groups().len(), if parts { 2 } else { 0 }, "{text}{}", fit(&text));
+    }
+}

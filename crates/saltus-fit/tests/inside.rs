@@ -28,6 +28,7 @@ fn files() -> Vec<PathBuf> {
                 "read/limits.rs",
                 "read/check.rs",
                 "read/grid/grouped.rs",
+                "read/columns/conditions.rs",
                 "read/columns/gates.rs",
                 "read/sequence.rs",
                 "read/heading/inside.rs",

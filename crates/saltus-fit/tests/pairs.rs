@@ -106,8 +106,8 @@ proptest! {
         prop_assert!(near(report.cor().unwrap().value, e, 0.005), "{}", report);
     }
 
-    /// A sentence tells from where a ball was dropped, whoever did it and whatever else it tells; the
-    /// list below it is of the rebounds.
+    /// A sentence states from where a ball was dropped, whoever did it and whatever else it states;
+    /// the list below it is of the rebounds.
     #[test]
     fn a_sentence_states_the_release_of_a_list(
         e in 0.5..0.85_f64,
@@ -168,7 +168,8 @@ fn contacts_are_shorter_than_flights() {
     assert!(!taken(300.0) && !taken(150.0));
 }
 
-/// Times that nothing blocks, words that name no gate, and times of contacts that overlap are asked.
+/// Times that nothing blocks, words that name no gate, and times of contacts that overlap are
+/// asked.
 #[test]
 fn other_pairs_of_columns_are_not_coupled() {
     for text in [

@@ -10,6 +10,7 @@ use super::phrases::Phrase;
 use super::units::{Dimension, Unit};
 use super::vocabulary::{Atom, folded};
 use super::words::{Kind, Word, split};
+use super::written::{rounds_to, step};
 use crate::quantity::Ball;
 
 /// The number that a text ends in, and the text before it.
@@ -50,7 +51,8 @@ fn turns_away(word: &Word) -> bool {
 /// `Drop height: 1 m`, `Drop height (cm) 100`, `tested, dropped from 100 cm onto stone`: of the
 /// clause that states it every word up to the number has to be understood.
 pub(super) fn drop(text: &str) -> Option<DropHeight> {
-    let text = &*without_error(text);
+    let text = without_repeat(text);
+    let text = &*without_error(&text);
     // `our ball (dropped from 1 m)`.
     clauses(text).chain(bracketed(text)).chain(dashed(text)).find_map(|clause| {
         let plain = |w: &Word| !matches!(w.kind, Kind::Unknown | Kind::Number(_)) && !turns(w);
@@ -80,8 +82,8 @@ pub(super) fn drop(text: &str) -> Option<DropHeight> {
                     Phrase::From.is(&folded(&w.text)) || w.is(Atom::Filler) && beyond && after.is_empty()
                 })
                 && !before.iter().any(turns);
-            // Whatever else is told of it: a ball was let go, and the number stands behind `from`,
-            // or before `height`.
+            // Whatever else the clause holds: a ball was let go, and the number stands behind
+            // `from`, or before `height`.
             let last = before.last().map(|w| folded(&w.text)).unwrap_or_default();
             let begins = after.first().is_some_and(|w| w.is(Atom::Height));
             let placed = Phrase::From.is(&last) || Phrase::At.is(&last) && begins;
@@ -91,7 +93,7 @@ pub(super) fn drop(text: &str) -> Option<DropHeight> {
             let all = || before.iter().chain(&after);
             let of_ball = placed && (follows || leads) && beyond && all().any(names_ball);
             let of_ball = of_ball && !all().any(|w| turns(w) || matches!(w.kind, Kind::Number(_)));
-            // Something else was done as well, and that from there: `dropped it and filmed it from`.
+            // Something else was done as well, from there: `dropped it and filmed it from`.
             let and = |w: &Word| Phrase::And.is(&folded(&w.text));
             let other = from.is_some_and(|words| Phrase::From.is(&last) && words.iter().any(and));
             let fits = before.iter().all(plain) && (whole || said && !after.iter().any(turns)) || told || of_ball;
@@ -123,6 +125,23 @@ fn without_error(text: &str) -> Cow<'_, str> {
         let (number, error) = ["±", "+/-"].iter().find_map(|mark| inside.split_once(mark))?;
         let bare = |text: &str| text.trim().replace(',', ".").parse::<f64>().is_ok();
         (bare(number) && bare(error)).then(|| format!("{before}{} {}", number.trim(), after.trim_start()))
+    });
+    found.map_or(Cow::Borrowed(text), Cow::Owned)
+}
+
+/// A text without a length in brackets that is the one before it in another unit: `1 m (100 cm)`.
+pub(super) fn without_repeat(text: &str) -> Cow<'_, str> {
+    let length = |text: &str| match cell::read(text, false) {
+        Cell::Number(m) => Some((m.value, m.unit.filter(|unit| unit.dimension == Dimension::Length)?)),
+        _ => None,
+    };
+    let found = text.split_once('(').and_then(|(before, rest)| {
+        let (inside, after) = rest.split_once(')')?;
+        let words: Vec<&str> = before.split_whitespace().collect();
+        let last = |n: usize| length(&words.get(words.len().checked_sub(n)?..)?.join(" "));
+        let ((repeat, unit), (value, of)) = (length(inside.trim())?, last(2).or_else(|| last(1))?);
+        let same = rounds_to(of.si(value) / unit.si(1.0), repeat, step(std::iter::once(repeat)));
+        (same && unit != of).then(|| format!("{}{after}", before.trim_end()))
     });
     found.map_or(Cow::Borrowed(text), Cow::Owned)
 }
@@ -294,6 +313,9 @@ mod tests {
             ("Wir haben den Ball immer aus 1,50 m fallen lassen", None, Some(1.5)),
             ("We laten een stuiterbal los op 1,60 m hoogte en lezen af", None, Some(1.6)),
             ("Ball: Spalding   Drop height = 72 cm", None, Some(0.72)),
+            ("Dropped from 1 m (100 cm)", None, Some(1.0)),
+            ("dropped from 5 ft (1.5 m) onto wood", None, Some(1.524)),
+            ("Released from 40 in (1016 mm)", None, Some(1.016)),
             ("Die Fallhöhe war (120,0 ± 0,5) cm", None, Some(1.2)),
             ("Zorb dropped a ball of 5 cm", None, None),
             ("Zorb dropped the wobble from 2 m", None, None),

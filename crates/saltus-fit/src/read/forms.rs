@@ -190,7 +190,8 @@ fn prose(line: &str) -> bool {
     told(line) && silent(line)
 }
 
-/// Whether a line measures nothing: no number in it has a unit, but one that is an error of reading.
+/// Whether a line measures nothing: no number in it has a unit, but one that is an error of
+/// reading.
 fn silent(line: &str) -> bool {
     let error = |part: &Part<'_>| split(part.words).iter().any(|word| word.is(Atom::Error));
     let unit =

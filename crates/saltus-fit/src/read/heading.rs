@@ -5,6 +5,7 @@ mod inside;
 mod meaning;
 
 use super::aside::Why;
+use super::phrases::Phrase;
 use super::units::{Dimension, Scale, Unit};
 use super::vocabulary::{Atom, folded, misspelt, narrow, short_for};
 use super::words::{Kind, Word, numbers, split, unaddressed};
@@ -454,6 +455,15 @@ impl Heading {
     /// A unit among the words, but not as the first: `height_cm`, `height in cm`, where the inch is
     /// a preposition.
     fn take_unit_word(&mut self, words: &mut Vec<Word>) {
+        // `temp_C`: a letter behind a temperature is its unit.
+        if let [.., of, last] = words.as_slice()
+            && matches!(last.text.as_str(), "C" | "F" | "K")
+            && Phrase::Temperature.is(&folded(&of.text))
+        {
+            self.unit = Unit::parse("°C");
+            words.pop();
+            return;
+        }
         // Before a word that is known the inch is a preposition: `height in cm`, `time in air`.
         let named = |n: usize| matches!(words.get(n), Some(Word { kind: Kind::Known(_), .. }));
         let is_unit = |n: usize| match words[n].kind {

@@ -84,10 +84,12 @@ pub(super) enum Phrase {
     UpTo,
     /// Before what is let loose: the verb parts in two.
     Lets,
+    /// How warm something is.
+    Temperature,
 }
 
 impl Phrase {
-    const ALL: [(&'static str, Self); 38] = [
+    const ALL: [(&'static str, Self); 39] = [
         ("missing", Self::Missing),
         ("about", Self::About),
         ("half", Self::Half),
@@ -126,6 +128,7 @@ impl Phrase {
         ("gate", Self::Gate),
         ("up to", Self::UpTo),
         ("lets", Self::Lets),
+        ("temperature", Self::Temperature),
     ];
 
     /// The phrases of this kind, in the order of the file.

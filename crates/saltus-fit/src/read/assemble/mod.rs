@@ -429,8 +429,8 @@ fn percent(region: &Region<'_>, columns: &Columns, table: &mut Table) -> Result<
     Ok(())
 }
 
-/// Energies as heights, and times at a gate as speeds: of each group, whose mass is one, the largest
-/// counts as a metre.
+/// Energies as heights, and times at a gate as speeds: of each group, whose mass is one, the
+/// largest counts as a metre.
 fn energies(columns: &Columns, trials: &mut [Trial]) {
     let energy = |c: &Column| c.unit.is_some_and(|unit| matches!(unit.scale, Scale::Energy { .. }));
     if !columns.values().any(|(_, c, _)| energy(c) || c.turned) {

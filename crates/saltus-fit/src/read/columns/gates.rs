@@ -30,7 +30,7 @@ impl Columns {
     pub(super) fn coupled(&mut self, region: &Region<'_>) {
         self.gates(region);
         self.contacts(region);
-        self.from_and_up_to(region);
+        self.up_to_from(region);
         self.until_rest(region);
     }
 
@@ -116,7 +116,7 @@ impl Columns {
     }
 
     /// `from` beside `up to`: the heights of a drop and of its rebound.
-    fn from_and_up_to(&mut self, region: &Region<'_>) {
+    fn up_to_from(&mut self, region: &Region<'_>) {
         let height = |c: &Column| c.unit.is_none_or(|unit| unit.dimension == Dimension::Length);
         let from = |c: &Column| height(c) && c.of_words(Phrase::From);
         let to = |c: &Column| height(c) && c.of_words(Phrase::UpTo);

@@ -1,6 +1,7 @@
 //! What the columns of a table are: a heading alone says much, its neighbours and its cells the
 //! rest.
 
+mod conditions;
 mod energies;
 mod faults;
 mod frames;
@@ -132,6 +133,7 @@ impl Columns {
         found.deltas(region);
         found.capital(region);
         found.letters();
+        found.room(region);
         found.unnamed(region)?;
         found.groups(region, options)?;
         found.chosen(region, options)?;
@@ -378,19 +380,6 @@ impl Columns {
             self.leave(index, Why::NotChosen);
         }
         Ok(())
-    }
-
-    /// Hundredths beside heights of several trials follow from their mean.
-    fn hundredths_of_repeats(&mut self) {
-        let percent = |c: &Column| c.unit.is_some_and(|unit| unit.scale == Scale::Percent);
-        let high = |v: &Value| v.what == What::Height && v.at == At::Row;
-        let repeated = |(_, c, v): (usize, &Column, &Value)| high(v) && !percent(c) && !v.trial.is_empty();
-        if !self.values().any(repeated) {
-            return;
-        }
-        let alone = |v: &Value| high(v) && v.trial.is_empty() && v.group.is_empty();
-        let found: Vec<usize> = self.values().filter(|(_, c, v)| percent(c) && alone(v)).map(|(n, _, _)| n).collect();
-        found.into_iter().for_each(|index| self.leave(index, Why::Derived));
     }
 
     /// Two columns of the same readings are a question, unless they say the same.

@@ -1,7 +1,7 @@
 //! Ratios of heights, where they are all there is: a table of them alone, or beside the heights of
 //! release.
 
-use super::{Columns, Kind, plain};
+use super::{Column, Columns, Kind, plain};
 use crate::error::TableError;
 use crate::finding::Note;
 use crate::read::aside::Why;
@@ -40,12 +40,25 @@ pub(super) fn of_hundredths(region: &Region<'_>, column: usize) -> bool {
 }
 
 impl Columns {
+    /// Hundredths beside heights of several trials follow from their mean.
+    pub(super) fn hundredths_of_repeats(&mut self) {
+        let percent = |c: &Column| c.unit.is_some_and(|unit| unit.scale == Scale::Percent);
+        let high = |v: &Value| v.what == What::Height && v.at == At::Row;
+        let repeated = |(_, c, v): (usize, &Column, &Value)| high(v) && !percent(c) && !v.trial.is_empty();
+        if !self.values().any(repeated) {
+            return;
+        }
+        let alone = |v: &Value| high(v) && v.trial.is_empty() && v.group.is_empty();
+        let found: Vec<usize> = self.values().filter(|(_, c, v)| percent(c) && alone(v)).map(|(n, _, _)| n).collect();
+        found.into_iter().for_each(|index| self.leave(index, Why::Derived));
+    }
+
     /// The one column of ratios of heights of a table that has no other readings is read: as
     /// heights of which the release is the whole, where all are parts of it and bounces are counted
     /// or listed as they fall; else each row is a drop, and there may be a column for each trial.
     pub(super) fn shares(&mut self, region: &Region<'_>) {
-        let read = |c: &super::Column| c.heading.unknown.is_empty() && c.value().is_some_and(|v| v.role != Role::Error);
-        let released = |c: &super::Column| c.value().is_some_and(|v| v.what == What::Height && v.at == At::Release);
+        let read = |c: &Column| c.heading.unknown.is_empty() && c.value().is_some_and(|v| v.role != Role::Error);
+        let released = |c: &Column| c.value().is_some_and(|v| v.what == What::Height && v.at == At::Release);
         let counted = self.number().is_some_and(|(_, sure)| sure);
         let metres = self.columns.iter().any(|c| released(c) && !c.heading.unit.is_none_or(Unit::unscaled));
         if metres && !counted {
