@@ -97,13 +97,17 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let c = fitted(|u| at(from + h * u));
             if h > shortest {
                 let fit = Fit::of(&c, |u| at(from + h * u), h, now.seconds().abs() + from + h);
-                if !fit.holds(&noise) && !longer.as_ref().is_some_and(|longer| fit.is_rough(longer, &noise)) {
+                let rough = |i: usize| longer.as_ref().is_some_and(|longer| fit.is_rough(i, longer));
+                let holds = |i: usize| fit.fits(i) || fit.off.get(i) <= FEW * noise.get(i) || rough(i);
+                if !(0..x.len()).all(holds) {
                     (longer, length) = (Some(fit.off), 0.5 * h);
                     continue;
                 }
-                noise = x.with(|i| if fit.is_off(i) { noise.get(i).max(fit.off.get(i)) } else { noise.get(i) });
-                longer = None;
+                // By what a piece shows itself alone: else it would grow with each that it lets pass.
+                let shown = |i: usize| if !fit.fits(i) && rough(i) { fit.off.get(i) } else { 0.0 };
+                noise = x.with(|i| noise.get(i).max(shown(i)));
             }
+            longer = None;
             let told = observer.piece(mode, &Piece::new(now.after(from), h, h, &c));
             from = if last { span } else { from + h };
             if told.is_break() {
@@ -148,24 +152,16 @@ impl<S: State> Fit<S> {
         Self { off: size.with(off), allowed, size }
     }
 
-    fn is_off(&self, i: usize) -> bool {
-        let fits = self.off.get(i) <= self.allowed.get(i);
-        !fits // nor what is no number
+    fn fits(&self, i: usize) -> bool {
+        self.off.get(i) <= self.allowed.get(i)
     }
 
-    /// Whether the powers are as good as the exact state, which is rough by the `noise`.
-    fn holds(&self, noise: &S) -> bool {
-        (0..self.off.len()).all(|i| !self.is_off(i) || self.off.get(i) <= FEW * noise.get(i))
-    }
-
-    /// Whether what they are off by, beside a piece twice as long, is the rounding of a formula
-    /// that cancels: nine digits are right, and half of the length has not mended half of it.
-    fn is_rough(&self, longer: &S, noise: &S) -> bool {
-        let rough = |i: usize| {
-            let off = self.off.get(i);
-            off <= MINUTE * self.size.get(i) && 2.0 * off > longer.get(i) || off <= FEW * noise.get(i)
-        };
-        (0..self.off.len()).all(|i| !self.is_off(i) || rough(i))
+    /// Whether what coordinate `i` is off by, beside a piece twice as long, is the rounding of a
+    /// formula that cancels: nine digits are right, and half of the length has not mended half of
+    /// it.
+    fn is_rough(&self, i: usize, longer: &S) -> bool {
+        let off = self.off.get(i);
+        off <= MINUTE * self.size.get(i) && 2.0 * off > longer.get(i)
     }
 }
 

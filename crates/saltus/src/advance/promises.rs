@@ -85,7 +85,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// promised to, if it does not: with the coordinates that it does not read of another state.
     fn reads_more(&self, mode: A::Mode, t: f64, x: &A::State, other: &A::State) -> Option<(A::Edge, String)> {
         let edges = self.automaton.edges(mode);
-        let count = edges.iter().count() as u64;
+        let count = edges.len() as u64;
         let edge = edges.iter().nth(usize::try_from(self.memory.arcs.checked_rem(count)?).ok()?)?;
         let (first, end) = self.automaton.about(edge).reads?;
         let n = x.len();
