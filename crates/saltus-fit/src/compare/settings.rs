@@ -74,12 +74,19 @@ fn follow<'a>(
     points.sort_by(|a, b| a.1.1.total_cmp(&b.1.1));
     let spare = points.len().checked_sub(2).filter(|spare| *spare > 0)?;
     let line = Line::through(points.iter().map(|point| point.1));
-    let about = (line.all - line.explained).max(1e-300) / spare as f64;
-    let p = variance_ratio_p(line.explained / about, 1, spare)?;
+    let p = by_chance(&line, spare)?;
     let at = |(cell, point): &(&str, Point)| ((*cell).to_owned(), cor + line.at(point.1));
     let (first, last) = (at(points.first()?), at(points.last()?));
     let (low, high) = if first.1 < last.1 { (first, last) } else { (last, first) };
     (high.1 - low.1 > ROUNDED).then_some(Differ { p, spare, low, high })
+}
+
+/// The probability of a slope like that of a line by chance, where the scatter about it has so much
+/// `freedom`.
+#[allow(clippy::cast_precision_loss)]
+fn by_chance(line: &Line, freedom: usize) -> Option<f64> {
+    let about = (line.all - line.explained).max(1e-300) / freedom as f64;
+    variance_ratio_p(line.explained / about, 1, freedom)
 }
 
 /// The number that a cell begins with, `20` of `20 °C`.
@@ -152,7 +159,7 @@ pub(crate) fn drift(trials: &[Trial], separate: &[(f64, f64)], cor: f64) -> Opti
     let within: Vec<Point> = settings.values().flat_map(about).collect();
     let chance = |line: &Line, count: usize, groups: usize| {
         let freedom = count.checked_sub(1 + groups).filter(|freedom| count >= TREND && *freedom > 0)?;
-        variance_ratio_p(line.explained / ((line.all - line.explained).max(1e-300) / freedom as f64), 1, freedom)
+        by_chance(line, freedom)
     };
     let repeats = chance(&Line::through(within.iter().copied()), within.len(), settings.len()).filter(|p| *p < REJECT);
     let line = Line::through(points());

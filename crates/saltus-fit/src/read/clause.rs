@@ -130,7 +130,7 @@ fn without_error(text: &str) -> Cow<'_, str> {
 }
 
 /// A text without a length in brackets that is the one before it in another unit: `1 m (100 cm)`.
-pub(super) fn without_repeat(text: &str) -> Cow<'_, str> {
+fn without_repeat(text: &str) -> Cow<'_, str> {
     let length = |text: &str| match cell::read(text, false) {
         Cell::Number(m) => Some((m.value, m.unit.filter(|unit| unit.dimension == Dimension::Length)?)),
         _ => None,

@@ -20,10 +20,13 @@ impl Columns {
         let warmth = |c: &Column| pieces(&c.heading.text).iter().any(|word| named(&folded(word)));
         for index in 0..self.columns.len() {
             let column = &self.columns[index];
+            if column.kind != Kind::Setting || !warmth(column) {
+                continue;
+            }
             let (low, high) = region
                 .numbers(index)
                 .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), n| (low.min(n), high.max(n)));
-            if column.kind == Kind::Setting && warmth(column) && high - low > 0.0 && high - low < ROOM {
+            if high > low && high - low < ROOM {
                 self.leave(index, Why::Other);
             }
         }

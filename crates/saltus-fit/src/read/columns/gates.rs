@@ -4,7 +4,7 @@
 use super::{Column, Columns, Kind, plain};
 use crate::read::aside::Why;
 use crate::read::grid::shown;
-use crate::read::heading::{At, What};
+use crate::read::heading::{At, Value, What};
 use crate::read::phrases::Phrase;
 use crate::read::region::Region;
 use crate::read::units::{Dimension, Unit};
@@ -18,6 +18,11 @@ fn words(column: &Column) -> Vec<String> {
 }
 
 impl Column {
+    /// Whether its unit is one of time.
+    fn timed(&self) -> bool {
+        self.unit.is_some_and(|unit| unit.dimension == Dimension::Time)
+    }
+
     /// Whether its heading is words of this kind and nothing else, beside its unit.
     pub(in crate::read) fn of_words(&self, phrase: Phrase) -> bool {
         let name = folded(self.heading.text.split(['(', '[']).next().unwrap_or_default());
@@ -49,31 +54,30 @@ impl Columns {
         }
     }
 
+    /// The only column that fits.
+    pub(super) fn only(&self, fits: impl Fn(&Column) -> bool) -> Option<usize> {
+        let mut found = (0..self.columns.len()).filter(|&n| fits(&self.columns[n]));
+        found.next().filter(|_| found.next().is_none())
+    }
+
     /// The only two columns that fit, the first as `one` and the other as `other`.
     fn pair(&self, one: impl Fn(&Column) -> bool, other: impl Fn(&Column) -> bool) -> Option<(usize, usize)> {
-        let only = |fits: &dyn Fn(&Column) -> bool| {
-            let mut found = (0..self.columns.len()).filter(|&n| fits(&self.columns[n]));
-            found.next().filter(|_| found.next().is_none())
-        };
-        only(&one).zip(only(&other)).filter(|(one, other)| one != other)
+        self.only(one).zip(self.only(other)).filter(|(one, other)| one != other)
     }
 
     /// A column is what it is called beside another one, whatever else its words say.
-    fn becomes(&mut self, index: usize, what: What, at: At) {
+    pub(super) fn becomes(&mut self, index: usize, what: What, at: At) {
         let name = shown(&self.columns[index].heading.text);
         self.aside.retain(|aside| aside.name != name);
         self.columns[index].heading.unknown.clear();
-        let mut value = plain(what);
-        value.at = at;
-        self.columns[index].kind = Kind::Value(value);
+        self.columns[index].kind = Kind::Value(Value { at, ..plain(what) });
     }
 
     /// `Gate time down (ms)` beside `Gate time up (ms)`: a ball of one size blocks a gate for as
     /// long as it is slow, so that the speeds are to each other as the times turned over.
     fn gates(&mut self, region: &Region<'_>) {
-        let timed = |c: &Column| c.unit.is_some_and(|unit| unit.dimension == Dimension::Time);
         let named = region.aside.iter().any(|aside| names_gate(&aside.name)) || names_gate(region.view.grid.name);
-        let gate = |c: &Column| timed(c) && (named || names_gate(&c.heading.text));
+        let gate = |c: &Column| c.timed() && (named || names_gate(&c.heading.text));
         let down = |c: &Column| c.heading.has(Atom::Before) || words(c).iter().any(|word| Phrase::Down.is(word));
         let rises = |c: &Column| words(c).iter().any(|word| Phrase::UpTo.is(word));
         let up = |c: &Column| (c.heading.has(Atom::After) || rises(c)) && !down(c);
@@ -91,8 +95,7 @@ impl Columns {
     /// `t_on (ms)` beside `t_off (ms)`, whose names differ in that word alone: each contact begins
     /// after the one before has ended, and is far shorter than what lies between.
     fn contacts(&mut self, region: &Region<'_>) {
-        let timed = |c: &Column| c.unit.is_some_and(|unit| unit.dimension == Dimension::Time);
-        let has = |c: &Column, phrase: Phrase| timed(c) && words(c).iter().any(|word| phrase.is(word));
+        let has = |c: &Column, phrase: Phrase| c.timed() && words(c).iter().any(|word| phrase.is(word));
         let begins = |c: &Column| has(c, Phrase::Begins) && !has(c, Phrase::Ends);
         let ends = |c: &Column| has(c, Phrase::Ends) && !has(c, Phrase::Begins);
         let Some((on, off)) = self.pair(begins, ends) else { return };

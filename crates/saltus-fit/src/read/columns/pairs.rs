@@ -214,10 +214,7 @@ impl Columns {
             let unit = c.heading.unit.is_some_and(|unit| unit.dimension == Dimension::Speed);
             unit && c.heading.text.split([' ', '(', '[', '/']).next() == Some(name) && c.heading.only()
         };
-        let one = |name: &str| {
-            let mut found = (0..self.columns.len()).filter(|&n| speed(&self.columns[n], name));
-            found.next().filter(|_| found.next().is_none())
-        };
+        let one = |name: &str| self.only(|c| speed(c, name));
         let after = |&n: &usize| self.columns[n].value().is_some_and(|v| (v.what, v.at) == (What::Speed, At::After));
         let primed = (0..self.columns.len()).filter(after).find(|&n| self.columns[n].heading.text.starts_with('v'));
         let rising = (0..self.columns.len()).find(after);
@@ -227,11 +224,7 @@ impl Columns {
         });
         let lettered = one("u").zip(one("v")).or(one("v").zip(primed));
         let Some((before, after)) = lettered.or(falling.zip(rising)) else { return };
-        let name = shown(&self.columns[before].heading.text);
-        self.aside.retain(|aside| aside.name != name);
-        self.columns[before].heading.unknown.clear();
-        self.columns[before].kind = Kind::Value(plain(What::Speed));
-        self.place(before, At::Before, String::new());
+        self.becomes(before, What::Speed, At::Before);
         self.place(after, At::After, String::new());
     }
 
