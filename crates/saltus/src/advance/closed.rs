@@ -103,7 +103,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                     (longer, length) = (Some(fit.off), 0.5 * h);
                     continue;
                 }
-                // By what a piece shows itself alone: else it would grow with each that it lets pass.
+                // By what a piece shows itself: else it would grow with each that it lets pass.
                 let shown = |i: usize| if !fit.fits(i) && rough(i) { fit.off.get(i) } else { 0.0 };
                 noise = x.with(|i| noise.get(i).max(shown(i)));
             }
