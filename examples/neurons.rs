@@ -9,7 +9,7 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use saltus::{About, Automaton, Edges, Entry, JumpOf, Observer, Refusal, Simulation, Vector};
-use saltus_examples::Figure;
+use saltus_examples::{Figure, slope};
 
 /// Leaky integrate-and-fire neurons, u' = I - u, each coupled to all others (R. Mirollo, S.
 /// Strogatz, SIAM J. Appl. Math. 50 (1990) 1645): at u = 1 a neuron spikes, begins anew at 0, and
@@ -100,13 +100,6 @@ fn measured(n: usize, spikes: usize) -> Result<(f64, f64), Box<dyn Error>> {
     }
     let off = exact.iter().zip(&found.0).map(|(exact, found)| (exact.1 - found.1).abs());
     Ok((off.fold(0.0, f64::max), each))
-}
-
-/// The slope of the straight line nearest to points.
-fn slope(points: &[[f64; 2]]) -> f64 {
-    let mean = |axis: usize| points.iter().map(|p| p[axis]).sum::<f64>() / points.len() as f64;
-    let [x, y] = [mean(0), mean(1)];
-    points.iter().map(|p| (p[0] - x) * (p[1] - y)).sum::<f64>() / points.iter().map(|p| (p[0] - x).powi(2)).sum::<f64>()
 }
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -63,19 +63,30 @@ pub(crate) fn listed(state: &impl State) -> String {
     written(&state, &names)
 }
 
+/// So many coordinates of a state are written, and of more how many there are.
+const WRITTEN: usize = 12;
+
 fn written(state: &[f64], names: &[Cow<'static, str>]) -> String {
-    if names.is_empty() || names.len() != state.len() {
-        return format!("{state:?}");
+    let named = !names.is_empty() && names.len() == state.len();
+    let each = state.iter().take(WRITTEN).enumerate();
+    let mut items: Vec<_> =
+        each.map(|(i, value)| if named { format!("{} = {value:?}", names[i]) } else { format!("{value:?}") }).collect();
+    if state.len() > WRITTEN {
+        items.push(format!("… {} coordinates", state.len()));
     }
-    let coordinates: Vec<_> = names.iter().zip(state).map(|(name, value)| format!("{name} = {value:?}")).collect();
-    format!("({})", coordinates.join(", "))
+    let list = items.join(", ");
+    if named { format!("({list})") } else { format!("[{list}]") }
 }
 
 /// Which coordinates of a flow are not finite.
 #[cold]
 pub(crate) fn not_finite(state: &impl State) -> String {
-    let wrong = (0..state.len()).filter(|&i| !state.get(i).is_finite());
-    let each: Vec<_> = wrong.map(|i| format!("{}' = {}", state.name(i), state.get(i))).collect();
+    let wrong = || (0..state.len()).filter(|&i| !state.get(i).is_finite());
+    let mut each: Vec<_> = wrong().take(WRITTEN).map(|i| format!("{}' = {}", state.name(i), state.get(i))).collect();
+    let count = wrong().count();
+    if count > WRITTEN {
+        each.push(format!("… {count} coordinates"));
+    }
     each.join(", ")
 }
 
@@ -104,6 +115,9 @@ pub enum ErrorKind {
     /// The series or exact solution is that of another flow: it does not start from the state with
     /// the flow's slope.
     Series,
+    /// The pattern of the flow's Jacobian leaves out an entry, or is of another number of
+    /// coordinates: see [`Sparsity`](crate::Sparsity).
+    Sparsity,
     /// The flow is not finite, however short the step.
     Flow,
     /// The guard is not a number.
@@ -182,6 +196,7 @@ impl fmt::Display for Error {
             ErrorKind::InitialState
             | ErrorKind::Dimension
             | ErrorKind::Series
+            | ErrorKind::Sparsity
             | ErrorKind::Flow
             | ErrorKind::StepSize
             | ErrorKind::Unfinished => on_the_way(f, *kind, note, place.state.len())?,
@@ -221,6 +236,11 @@ fn on_the_way(f: &mut fmt::Formatter<'_>, kind: ErrorKind, note: Option<&str>, c
         ),
         ErrorKind::Series => f.write_str(
             "the series or exact solution does not start from the state with the slope that the flow gives: write the same flow in Automaton::solution and Automaton::flow, or in series or exact and mode of a Hybrid",
+        ),
+        ErrorKind::Sparsity => write!(
+            f,
+            "the sparsity of the mode {}: give all that the flow reads, in Automaton::solution or Hybrid::sparse, or let Sparsity::found look for it",
+            note.unwrap_or("?")
         ),
         ErrorKind::Flow => {
             let which = note.map_or(String::new(), |which| format!(" ({which})"));

@@ -51,7 +51,8 @@ thread_local! {
 /// # Limits
 /// Every stepper, exact solutions and Taylor series by a [`Formula`](crate::Formula) take it;
 /// derivatives of runs (`Linearize`) want a number of coordinates that is fixed as the program is
-/// compiled. [`Rodas5P`](crate::Rodas5P) solves dense systems: n² numbers, n³ operations a step.
+/// compiled. [`Rodas5P`](crate::Rodas5P) solves dense systems, of n² numbers and n³ operations a
+/// step, unless the pattern of the Jacobian is given: [`Sparsity`](crate::Sparsity).
 ///
 /// A coordinate beyond the length is [`f64::NAN`] for [`State::get`], so that a flow of another
 /// length than its state fails with an error; by index, `x[i]`, it panics as a slice does.

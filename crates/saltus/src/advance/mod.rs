@@ -34,6 +34,7 @@ use crate::error::{Error, ErrorKind, Place};
 use crate::inspection::Inspection;
 use crate::observe::Observer;
 use crate::series::Tape;
+use crate::sparsity::Sparsity;
 use crate::step::Stepper;
 use crate::time::{Span, Time};
 
@@ -81,13 +82,15 @@ pub(crate) struct Advance<'a, A: Automaton, M> {
     held: Held<A>,
     /// The stretch of time on which the flow of the arc's mode is smooth.
     smooth: Smooth,
+    /// The pattern of its Jacobian, where that is given.
+    sparsity: Option<Sparsity>,
 }
 
 impl<'a, A: Automaton, M> Advance<'a, A, M> {
     #[inline(always)]
     pub(crate) fn new(automaton: &'a A, stepper: M, options: Options, memory: Memory<A::Edge, A::State>) -> Self {
         let (tape, held, smooth) = (Tape::new(), Held::default(), Smooth::ALWAYS);
-        Self { automaton, stepper, options, memory, tape, held, smooth }
+        Self { automaton, stepper, options, memory, tape, held, smooth, sparsity: None }
     }
 }
 
@@ -235,9 +238,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let &Span { now, .. } = clock;
         self.memory.steps_before = self.memory.stats.steps;
         self.memory.kept = None;
-        let stepped = self.options.stepped;
-        let solution = if stepped { Solution::Steps } else { self.automaton.solution(mode, now.seconds(), x) };
-        let end = match solution {
+        self.sparsity = None;
+        let end = match self.automaton.solution(mode, now.seconds(), x) {
+            Solution::Sparse(sparsity) => {
+                self.sparsity = Some(self.fitting(sparsity, mode, now, x)?);
+                self.stepped(mode, x.clone(), clock.in_numbers(), true, observer)
+            }
             Solution::Polynomial(polynomial) if exact => {
                 self.memory.before = None;
                 self.exact(mode, &polynomial, clock, observer)
@@ -246,7 +252,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 self.memory.before = None;
                 self.closed(mode, x, formula, clock, observer)
             }
-            Solution::Series(flow) => self.by_series(mode, x.clone(), flow, clock.in_numbers(), observer),
+            Solution::Series(flow) if !self.options.stepped => {
+                self.by_series(mode, x.clone(), flow, clock.in_numbers(), observer)
+            }
             // Nor is an exact solution cut in stops.
             _ => self.stepped(mode, x.clone(), clock.in_numbers(), true, observer),
         };

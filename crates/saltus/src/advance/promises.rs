@@ -1,9 +1,11 @@
-//! Whether guards that are promised affine are, and exact solutions those of their flows.
+//! Whether guards that are promised affine are, exact solutions those of their flows, and patterns
+//! those of their Jacobians.
 
 use crate::automaton::Automaton;
 use crate::automaton::solution::Solution;
 use crate::certainty::{SURELY, TINY};
 use crate::error::{Error, ErrorKind, Place};
+use crate::sparsity::Sparsity;
 use crate::state::State;
 use crate::step::Stepper;
 use crate::time::Time;
@@ -18,13 +20,18 @@ const FIRST: u64 = 8;
 /// through the ends nor on that through zero.
 const PARTS: [f64; 2] = [0.37, 0.41];
 
+/// Whether the promises of a run's `arc`, counted from 1, are looked at.
+fn is_due(arc: u64) -> bool {
+    arc <= FIRST || arc.is_power_of_two()
+}
+
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// Looks, now and then, at the promises of the guards of `mode` on the arc from `x` to its
     /// `end`. No part of the search, and so not counted.
     #[inline]
     pub(super) fn promises(&mut self, mode: A::Mode, x: &A::State, began: Time, end: &ArcEnd<A>) -> Result<(), Error> {
         self.memory.arcs += 1;
-        if self.memory.arcs > FIRST && !self.memory.arcs.is_power_of_two() {
+        if !is_due(self.memory.arcs) {
             return Ok(());
         }
         // Copies: what others refer to is kept in memory, and waited for.
@@ -58,6 +65,29 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             Solution::Formula(formula) => is(&formula(self.automaton, mode, t, x, 0.0), x),
             _ => true,
         }
+    }
+
+    /// The pattern of the Jacobian of `mode` at `x`, where it has as many coordinates as the state
+    /// and, on the arcs whose promises are looked at, leaves out none that the flow reads.
+    pub(super) fn fitting(
+        &self,
+        sparsity: Sparsity,
+        mode: A::Mode,
+        now: Time,
+        x: &A::State,
+    ) -> Result<Sparsity, Error> {
+        let t = now.seconds();
+        let flaw = if sparsity.len() != x.len() {
+            format!("has {} coordinates where the state has {}", sparsity.len(), x.len())
+        } else if !is_due(self.memory.arcs + 1) {
+            return Ok(sparsity);
+        } else {
+            let flow = |x: &A::State| self.automaton.flow(mode, self.smooth.within(t), x);
+            let Some((i, j)) = sparsity.left_out(x, flow) else { return Ok(sparsity) };
+            format!("leaves out that {}' reads {}", x.name(i), x.name(j))
+        };
+        let place = Place::new(t, mode, None::<A::Edge>, x);
+        Err(Error::new(ErrorKind::Sparsity, place).noting(Some(flaw)))
     }
 
     fn hold(&mut self, mode: A::Mode, times: [f64; 2], ends: [&A::State; 2]) -> Result<(), Error> {

@@ -292,7 +292,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             *count += 1;
             automaton.flow(mode, smooth.within(t), x)
         };
-        self.stepper.trial(&mut flow, t, x, slope, h)
+        self.stepper.sparse(&mut flow, t, x, slope, (h, self.sparsity.as_ref()))
     }
 
     /// Once more, for a step to a crossing: out of line, so that what every step runs through stays

@@ -249,8 +249,13 @@ impl<A: Invertible> Automaton for Reversed<'_, A> {
     }
 
     fn solution(&self, mode: A::Mode, s: f64, x: &A::State) -> Solution<Self> {
-        let Solution::Polynomial(polynomial) = self.automaton.solution(mode, -s, x) else { return Solution::Steps };
-        Solution::Polynomial(polynomial.map(|k, c| if k % 2 == 1 { c.with(|i| -c.get(i)) } else { c.clone() }))
+        match self.automaton.solution(mode, -s, x) {
+            Solution::Polynomial(polynomial) => {
+                Solution::Polynomial(polynomial.map(|k, c| if k % 2 == 1 { c.with(|i| -c.get(i)) } else { c.clone() }))
+            }
+            Solution::Sparse(sparsity) => Solution::Sparse(sparsity),
+            _ => Solution::Steps,
+        }
     }
 
     /// Of a flow: that of an image is not asked for.

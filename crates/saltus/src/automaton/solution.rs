@@ -4,6 +4,7 @@ use std::fmt;
 
 use crate::automaton::Automaton;
 use crate::series::Series;
+use crate::sparsity::Sparsity;
 use crate::state;
 
 /// A formula of an automaton: the state at `t + s` in a mode, if it is `x` at `t`.
@@ -61,6 +62,9 @@ type State<A> = <A as Automaton>::State;
 pub enum Solution<A: Automaton + ?Sized> {
     /// The flow is stepped.
     Steps,
+    /// The flow is stepped, and its Jacobian has no entries but these: where it is stiff a step's
+    /// cost grows with their number, and not with the cube of that of the coordinates.
+    Sparse(Sparsity),
     /// The exact solution is this polynomial in time: no step is taken.
     Polynomial(Polynomial<A::State>),
     /// A formula gives the exact solution: the state at `t + s`, for s ≥ 0, if it is `x` at `t`. No
@@ -137,7 +141,7 @@ impl<A: Automaton + ?Sized> Solution<A> {
         match self {
             Self::Polynomial(polynomial) => Some(polynomial.at(s)),
             Self::Formula(formula) => Some(formula(automaton, mode, t, x, s)),
-            Self::Steps | Self::Series(_) => None,
+            Self::Steps | Self::Sparse(_) | Self::Series(_) => None,
         }
     }
 
@@ -152,6 +156,7 @@ impl<A: Automaton + ?Sized> fmt::Debug for Solution<A> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Steps => f.write_str("Steps"),
+            Self::Sparse(sparsity) => f.debug_tuple("Sparse").field(sparsity).finish(),
             Self::Polynomial(polynomial) => f.debug_tuple("Polynomial").field(polynomial).finish(),
             Self::Formula(_) => f.write_str("Formula"),
             Self::Series(_) => f.write_str("Series"),

@@ -79,6 +79,7 @@ impl<S: State> Automaton for Hybrid<'_, S> {
         match self.find(mode) {
             Some(Mode { exact: Some(solution), .. }) => Solution::Polynomial(solution(t, x)),
             Some(Mode { series: Some(_), .. }) => Solution::Series(Self::expand),
+            Some(Mode { sparsity: Some(sparsity), .. }) => Solution::Sparse(sparsity.clone()),
             _ => Solution::Steps,
         }
     }

@@ -14,8 +14,20 @@ impl<'a, S: State> Hybrid<'a, S> {
         self.flaw = OnceLock::new();
         let index = self.modes.iter().position(|mode| mode.name == name).unwrap_or_else(|| {
             let (edges, guarded, clocks, stops) = (Vec::new(), Vec::new(), Vec::new(), self.everywhere.clone());
-            let (flow, refusal, series, exact, beyond) = (None, None, None, None, None);
-            self.modes.push(Mode { name, flow, refusal, series, exact, beyond, edges, guarded, clocks, stops });
+            let (flow, refusal, series, sparsity, exact, beyond) = (None, None, None, None, None, None);
+            self.modes.push(Mode {
+                name,
+                flow,
+                refusal,
+                series,
+                sparsity,
+                exact,
+                beyond,
+                edges,
+                guarded,
+                clocks,
+                stops,
+            });
             self.modes.len() - 1
         });
         &mut self.modes[index]

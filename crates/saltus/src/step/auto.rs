@@ -1,6 +1,7 @@
 //! Auto: Tsit5 or Dop853, by the tolerance; Rodas5P where a flow is stiff; or one of them alone.
 
 use super::{Dop853, Either, Rodas5P, Stepper, Trial, Tsit5};
+use crate::sparsity::Sparsity;
 use crate::state::State;
 
 /// The default: [`Tsit5`] down to a relative tolerance of 1e-7, [`Dop853`] below, and [`Rodas5P`]
@@ -142,6 +143,18 @@ impl Stepper for Auto {
         h: f64,
     ) -> Trial<S, Self::Stages<S>> {
         self.method.trial(flow, t, x, slope, h)
+    }
+
+    #[inline]
+    fn sparse<S: State>(
+        &self,
+        flow: &mut impl FnMut(f64, &S) -> S,
+        t: f64,
+        x: &S,
+        slope: &S,
+        step: (f64, Option<&Sparsity>),
+    ) -> Trial<S, Self::Stages<S>> {
+        self.method.sparse(flow, t, x, slope, step)
     }
 
     #[inline]

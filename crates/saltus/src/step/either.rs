@@ -1,6 +1,7 @@
 //! One of two steppers, chosen as a program runs.
 
 use super::{Stepper, Trial};
+use crate::sparsity::Sparsity;
 use crate::state::State;
 
 /// One of two methods, or what one of them keeps: a choice that is made at run time, where a model
@@ -99,6 +100,21 @@ impl<L: Stepper, T: Stepper> Stepper for Either<L, T> {
         match self {
             Self::Loose(method) => method.trial(flow, t, x, slope, h).with_stages(Either::Loose),
             Self::Tight(method) => method.trial(flow, t, x, slope, h).with_stages(Either::Tight),
+        }
+    }
+
+    #[inline]
+    fn sparse<S: State>(
+        &self,
+        flow: &mut impl FnMut(f64, &S) -> S,
+        t: f64,
+        x: &S,
+        slope: &S,
+        step: (f64, Option<&Sparsity>),
+    ) -> Trial<S, Self::Stages<S>> {
+        match self {
+            Self::Loose(method) => method.sparse(flow, t, x, slope, step).with_stages(Either::Loose),
+            Self::Tight(method) => method.sparse(flow, t, x, slope, step).with_stages(Either::Tight),
         }
     }
 

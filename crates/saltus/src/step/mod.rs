@@ -9,9 +9,12 @@
 //! | [`Rodas5P`] | 5(4) | 4 | 8, and 2 n + 1 for the Jacobian of n coordinates | stiff flows |
 
 mod auto;
+mod band;
 mod dop853;
 mod either;
 mod rodas5p;
+#[cfg(feature = "sparse")]
+mod scattered;
 mod system;
 mod tsit5;
 
@@ -23,6 +26,7 @@ pub use tsit5::Tsit5;
 
 use std::ops::RangeInclusive;
 
+use crate::sparsity::Sparsity;
 use crate::state::State;
 
 /// A one-step method with an error estimate and dense output.
@@ -90,6 +94,21 @@ pub trait Stepper: Copy {
         slope: &S,
         h: f64,
     ) -> Trial<S, Self::Stages<S>>;
+
+    /// [`trial`](Self::trial) by a flow of whose Jacobian the pattern is given, if one is. Only a
+    /// method that asks for a Jacobian has a use for it.
+    #[inline]
+    fn sparse<S: State>(
+        &self,
+        flow: &mut impl FnMut(f64, &S) -> S,
+        t: f64,
+        x: &S,
+        slope: &S,
+        (h, sparsity): (f64, Option<&Sparsity>),
+    ) -> Trial<S, Self::Stages<S>> {
+        let _ = sparsity;
+        self.trial(flow, t, x, slope, h)
+    }
 
     /// The square of how large the estimated local error of a trial is, as `square` measures the
     /// error of a state.

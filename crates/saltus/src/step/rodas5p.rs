@@ -1,8 +1,9 @@
 //! `Rodas5P`: L-stable, order 5(4), one Jacobian and ten linear solves a step, dense output of
 //! order 4.
 
-use super::system::{Room, System};
+use super::system::{Dense, Room, System};
 use super::{Stepper, Trial, closing, moved, weighted};
+use crate::sparsity::Sparsity;
 use crate::state::State;
 use crate::time::resolution;
 
@@ -22,15 +23,15 @@ use crate::time::resolution;
 /// stiff, [`Tsit5`](super::Tsit5) costs less.
 ///
 /// The Jacobian J = ∂f/∂x comes from central differences of the flow, 2 n evaluations for n
-/// coordinates, and ∂f/∂t from one evaluation if it is zero and from two otherwise. They probe the
-/// flow within 1e-5 of the scale of each coordinate, |x| or |h f|, or of what f changes by over a
-/// step where both are below a millionth of the largest; where it is undefined on one side, the
-/// other side serves. Their rounding shows in the
-/// work, not in the result: below a relative tolerance of about 1e-10 the steps shrink faster than
-/// the order would have it.
+/// coordinates (or two for each colour of its pattern, see [`Sparsity`]), and ∂f/∂t from one
+/// evaluation if it is zero and from two otherwise. They probe the flow within 1e-5 of the scale of
+/// each coordinate, |x| or |h f|, or of what f changes by over a step where both are below a
+/// millionth of the largest; where it is undefined on one side, the other side serves. Their
+/// rounding shows in the work, not in the result: below a relative tolerance of about 1e-10 the
+/// steps shrink faster than the order would have it.
 ///
-/// Up to 16 coordinates nothing is allocated; more cost three allocations per trial, which is
-/// little beside their n³.
+/// Up to 16 coordinates nothing is allocated; more cost a few allocations per trial, which is
+/// little beside their n³, or beside the n of a band.
 ///
 /// Source: G. Steinebach, *Construction of Rosenbrock–Wanner method `Rodas5P` and numerical
 /// benchmarks within the Julia Differential Equations package*, BIT Numerical Mathematics 63 (2023)
@@ -161,23 +162,37 @@ impl Stepper for Rodas5P {
         slope: &S,
         h: f64,
     ) -> Trial<S, ([S; 8], S, S)> {
+        self.sparse(flow, t, x, slope, (h, None))
+    }
+
+    #[inline]
+    fn sparse<S: State>(
+        &self,
+        flow: &mut impl FnMut(f64, &S) -> S,
+        t: f64,
+        x: &S,
+        slope: &S,
+        (h, sparsity): (f64, Option<&Sparsity>),
+    ) -> Trial<S, ([S; 8], S, S)> {
         let (mut few, mut some, mut many);
         let mut system = match x.len() {
             n @ 0..=4 => {
                 few = Room::<4>::new();
-                few.first(n)
+                System::Dense(few.first(n))
             }
             n @ 5..=16 => {
                 some = Room::<16>::new();
-                some.first(n)
+                System::Dense(some.first(n))
             }
-            n => {
-                many = (vec![0.0; n * n], vec![0.0; n], vec![0; n]);
-                System { matrix: &mut many.0, work: &mut many.1, order: &mut many.2 }
-            }
+            n => match sparsity {
+                Some(sparsity) => System::of(sparsity),
+                None => {
+                    many = (vec![0.0; n * n], vec![0.0; n], vec![0; n]);
+                    System::Dense(Dense { matrix: &mut many.0, work: &mut many.1, order: &mut many.2 })
+                }
+            },
         };
         system.fill(flow, t, x, slope, (h, GAMMA));
-        system.factor();
         let drift = time_derivative(flow, t, x, slope, h);
         let forced = |f: S, d: f64| f.with(|i| h * GAMMA * (f.get(i) + h * d * drift.get(i)));
 

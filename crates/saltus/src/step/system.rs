@@ -1,6 +1,10 @@
 //! The linear systems of a step by `Rodas5P`: 1 - hγJ, with the Jacobian J from differences of the
 //! flow.
 
+use super::band::Band;
+#[cfg(feature = "sparse")]
+use super::scattered::Scattered;
+use crate::sparsity::Sparsity;
 use crate::state::State;
 
 /// How far the differences for the Jacobian reach, relative to the scale of a coordinate: the cube
@@ -8,6 +12,9 @@ use crate::state::State;
 const REACH: f64 = 6.06e-6;
 /// A coordinate smaller than this part of the largest may have come to be so by chance.
 const BESIDE: f64 = 1e-6;
+/// A coordinate that is smaller is moved as if it were so large: differences of it are numbers of
+/// full precision.
+const LEAST: f64 = f64::MIN_POSITIVE / REACH;
 
 /// Room for the linear systems of up to N coordinates.
 pub(super) struct Room<const N: usize> {
@@ -24,24 +31,34 @@ impl<const N: usize> Room<N> {
 
     /// Room for `n` of them.
     #[inline]
-    pub(super) fn first(&mut self, n: usize) -> System<'_> {
+    pub(super) fn first(&mut self, n: usize) -> Dense<'_> {
         let matrix = &mut self.matrix.as_flattened_mut()[..n * n];
-        System { matrix, work: &mut self.work[..n], order: &mut self.order[..n] }
+        Dense { matrix, work: &mut self.work[..n], order: &mut self.order[..n] }
     }
 }
 
 /// Linear systems that share the matrix 1 - h γ J.
-pub(super) struct System<'a> {
-    /// By rows; once factored, L below the diagonal, U above it and the reciprocals of the diagonal
-    /// of U on it.
-    pub(super) matrix: &'a mut [f64],
-    pub(super) work: &'a mut [f64],
-    /// Which row was taken first, second, …
-    pub(super) order: &'a mut [usize],
+pub(super) enum System<'a> {
+    Dense(Dense<'a>),
+    Banded(Band, &'a Sparsity),
+    #[cfg(feature = "sparse")]
+    Scattered(Box<Scattered<'a>>),
+}
+
+impl<'a> System<'a> {
+    /// Of a pattern, which is solved as a band or, where that costs more, as it is.
+    pub(super) fn of(sparsity: &'a Sparsity) -> Self {
+        #[cfg(feature = "sparse")]
+        if Scattered::is_cheaper(sparsity) {
+            return Self::Scattered(Box::new(Scattered::new(sparsity)));
+        }
+        Self::Banded(Band::new(sparsity.len(), sparsity.band()), sparsity)
+    }
 }
 
 impl System<'_> {
-    /// Writes 1 - h γ J, with J from central differences of the flow.
+    /// Writes 1 - h γ J, with J from central differences of the flow, and factors it. A singular
+    /// matrix makes every solution infinite or NaN.
     #[inline(always)] // with a dimension known at compile time the loops vanish
     pub(super) fn fill<S: State>(
         &mut self,
@@ -58,6 +75,60 @@ impl System<'_> {
         if (0..n).any(|i| sizes.get(i) < smallest) {
             sizes = grown(flow, t, x, slope, h, &sizes, smallest);
         }
+        match self {
+            Self::Dense(system) => {
+                system.fill(flow, t, x, slope, h * gamma, &sizes);
+                system.factor();
+            }
+            Self::Banded(band, sparsity) => {
+                by_colours(sparsity, flow, (t, x), slope, &sizes, |(i, j), _, slope| {
+                    band.set(i, j, unit(i, j) - h * gamma * slope);
+                });
+                band.factor();
+            }
+            #[cfg(feature = "sparse")]
+            Self::Scattered(matrix) => {
+                let sparsity = matrix.sparsity;
+                by_colours(sparsity, flow, (t, x), slope, &sizes, |(i, j), entry, slope| {
+                    matrix.values[entry] = unit(i, j) - h * gamma * slope;
+                });
+                matrix.factor();
+            }
+        }
+    }
+
+    /// The solution for one right-hand side.
+    #[inline(always)] // with a dimension known at compile time the loops vanish
+    pub(super) fn solve<S: State>(&mut self, right: &S) -> S {
+        match self {
+            Self::Dense(system) => system.solve(right),
+            Self::Banded(band, _) => {
+                let solution = band.solve((0..right.len()).map(|i| right.get(i)));
+                right.with(|i| solution[i])
+            }
+            #[cfg(feature = "sparse")]
+            Self::Scattered(matrix) => {
+                let solution = matrix.solve((0..right.len()).map(|i| right.get(i)));
+                right.with(|i| solution[i])
+            }
+        }
+    }
+}
+
+/// A matrix of which every entry may be other than zero.
+pub(super) struct Dense<'a> {
+    /// By rows; once factored, L below the diagonal, U above it and the reciprocals of the diagonal
+    /// of U on it.
+    pub(super) matrix: &'a mut [f64],
+    pub(super) work: &'a mut [f64],
+    /// Which row was taken first, second, …
+    pub(super) order: &'a mut [usize],
+}
+
+impl Dense<'_> {
+    #[inline(always)]
+    fn fill<S: State>(&mut self, flow: &mut impl FnMut(f64, &S) -> S, t: f64, x: &S, slope: &S, by: f64, sizes: &S) {
+        let n = x.len();
         for j in 0..n {
             let reach = REACH * sizes.get(j);
             let mut probe = |to: f64| (to, flow(t, &x.with(|i| if i == j { to } else { x.get(i) })));
@@ -67,17 +138,15 @@ impl System<'_> {
             } else if !below.1.is_finite() {
                 below = (x.get(j), slope.clone());
             }
-            let scale = -h * gamma / (above.0 - below.0);
+            let scale = -by / (above.0 - below.0);
             for i in 0..n {
-                let unit = if i == j { 1.0 } else { 0.0 };
-                self.matrix[i * n + j] = unit + scale * (above.1.get(i) - below.1.get(i));
+                self.matrix[i * n + j] = unit(i, j) + scale * (above.1.get(i) - below.1.get(i));
             }
         }
     }
 
-    /// Factors the matrix by Gaussian elimination with row interchanges. A singular one makes every
-    /// solution infinite or NaN.
-    #[inline(always)] // with a dimension known at compile time the loops vanish
+    /// By Gaussian elimination with row interchanges.
+    #[inline(always)]
     pub(super) fn factor(&mut self) {
         let n = self.order.len();
         for (i, row) in self.order.iter_mut().enumerate() {
@@ -105,8 +174,7 @@ impl System<'_> {
         }
     }
 
-    /// The solution for one right-hand side.
-    #[inline(always)] // with a dimension known at compile time the loops vanish
+    #[inline(always)]
     pub(super) fn solve<S: State>(&mut self, right: &S) -> S {
         let n = self.order.len();
         for i in 0..n {
@@ -124,6 +192,45 @@ impl System<'_> {
             self.work[i] = value * self.matrix[i * n + i];
         }
         right.with(|i| self.work[i])
+    }
+}
+
+/// Entry (i, j) of 1.
+#[inline(always)]
+fn unit(i: usize, j: usize) -> f64 {
+    if i == j { 1.0 } else { 0.0 }
+}
+
+/// Gives each entry of a sparse Jacobian, with its row, its column and which of all it is: of each
+/// colour's columns from one difference of the flow.
+#[inline(never)]
+fn by_colours<S: State>(
+    sparsity: &Sparsity,
+    flow: &mut impl FnMut(f64, &S) -> S,
+    (t, x): (f64, &S),
+    slope: &S,
+    sizes: &S,
+    mut entry: impl FnMut((usize, usize), usize, f64),
+) {
+    let mut reaches = vec![0.0; x.len()];
+    for columns in sparsity.colours() {
+        reaches.fill(0.0);
+        columns.iter().for_each(|&j| reaches[j] = REACH * sizes.get(j));
+        let mut probe = |to: S| (flow(t, &to), to);
+        let mut above = probe(x.with(|j| x.get(j) + reaches[j]));
+        let mut below = probe(x.with(|j| x.get(j) - reaches[j]));
+        if !above.0.is_finite() {
+            above = (slope.clone(), x.clone());
+        } else if !below.0.is_finite() {
+            below = (slope.clone(), x.clone());
+        }
+        for &j in columns {
+            let apart = above.1.get(j) - below.1.get(j);
+            let (rows, first) = sparsity.column(j);
+            for (k, &i) in rows.iter().enumerate() {
+                entry((i, j), first + k, (above.0.get(i) - below.0.get(i)) / apart);
+            }
+        }
     }
 }
 
@@ -146,7 +253,7 @@ fn grown<S: State>(
         let grown = if bend > 0.0 { bend.min(smallest) } else { 0.0 };
         match sizes.get(i).max(grown) {
             0.0 => smallest,
-            size => size,
+            size => size.max(LEAST),
         }
     })
 }
