@@ -318,7 +318,7 @@ fn decimal(number: &str, comma: bool) -> Result<Option<f64>, Fault> {
 }
 
 /// A number whose thousands are parted by blanks or by apostrophes, `1 500`, `1'500`, without them.
-fn spaced(text: &str) -> Option<String> {
+pub(super) fn spaced(text: &str) -> Option<String> {
     const PARTS: [char; 5] = [' ', '\u{a0}', '\u{202f}', '\'', '’'];
     let end = text.find(|c: char| !(c.is_ascii_digit() || PARTS.contains(&c))).unwrap_or(text.len());
     let number = text[..end].trim_end_matches(PARTS);

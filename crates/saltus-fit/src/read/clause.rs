@@ -5,6 +5,7 @@ use std::borrow::Cow;
 
 use super::cell::{self, Cell};
 use super::heading::{At, DropHeight, Heading, Role, rate, released};
+use super::limits::MANY;
 use super::named::names_floor;
 use super::phrases::Phrase;
 use super::units::{Dimension, Unit};
@@ -64,8 +65,9 @@ pub(super) fn drop(text: &str) -> Option<DropHeight> {
                 .map_or(after, |(_, rest)| rest);
             // The sign that stands for it: `Fallhöhe h0 = 1 m`.
             let named = before.trim_end_matches([' ', '=', ':', '(']);
-            let sign = ["h0", "h_0", "h₀"].iter().find_map(|sign| named.strip_suffix(sign));
-            let (before, after) = (split(sign.unwrap_or(named)), split(after));
+            let (named, sign) = signed(named).unwrap_or((named, 0));
+            let height = DropHeight { sign, ..height };
+            let (before, after) = (split(named), split(after));
             let of_height = |w: &Word| w.is(Atom::Height) || matches!(&*folded(&w.text), "from" | "aus" | "de" | "von");
             // What is dropped from a height is dropped from it, wherever it falls.
             // A ball `from 1 m` was dropped from there.
@@ -106,8 +108,17 @@ pub(super) fn drop(text: &str) -> Option<DropHeight> {
             text: clause.trim().to_owned(),
             value,
             unit,
+            sign: signed(before.split(['(', '[']).next().unwrap_or_default()).map_or(0, |(_, sign)| sign),
         })
     })
+}
+
+/// The text before the sign of a height that it ends in, `h0`, `(H_1)`, and the number of the sign.
+fn signed(text: &str) -> Option<(&str, usize)> {
+    let text = text.trim_end().trim_end_matches([')', ']']);
+    let at = text.rfind([' ', '(', '[']).map_or(0, |at| at + 1);
+    let count = folded(&text[at..]).strip_prefix('h')?.trim_start_matches('_').parse().ok()?;
+    Some((text[..at].trim_end_matches([' ', '(', '[', ',']), count)).filter(|_| count <= MANY)
 }
 
 /// Whether a word is what balls are called, or ends in it: `ball`, `Wasserball`.
@@ -135,7 +146,8 @@ fn without_repeat(text: &str) -> Cow<'_, str> {
         Cell::Number(m) => Some((m.value, m.unit.filter(|unit| unit.dimension == Dimension::Length)?)),
         _ => None,
     };
-    let found = text.split_once('(').and_then(|(before, rest)| {
+    let found = text.match_indices('(').find_map(|(at, _)| {
+        let (before, rest) = (&text[..at], &text[at + 1..]);
         let (inside, after) = rest.split_once(')')?;
         let words: Vec<&str> = before.split_whitespace().collect();
         let last = |n: usize| length(&words.get(words.len().checked_sub(n)?..)?.join(" "));

@@ -55,7 +55,7 @@ pub(super) fn table(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<T
             if options.sheet.is_some() {
                 return Err(TableError::new(name, "this file has no sheets: it is a text").help("leave out --sheet"));
             }
-            let mut table = read(&Grid::open(name, None, &found.text)?, options)?;
+            let mut table = read(&Grid::open(name, None, &found.text)?, options, None)?;
             table.notes.extend(found.encoding.map(|encoding| Note::Encoded { encoding: encoding.to_owned() }.into()));
             table
         }
@@ -64,9 +64,9 @@ pub(super) fn table(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<T
     Ok(table)
 }
 
-/// Reads all tables of a grid together.
-fn read(grid: &Grid<'_>, options: &ReadOptions) -> Result<Table, TableError> {
-    let mut metadata = grid.metadata()?;
+/// Reads all tables of a grid together; `noted` is the height of release that another sheet states.
+fn read(grid: &Grid<'_>, options: &ReadOptions, noted: Option<f64>) -> Result<Table, TableError> {
+    let mut metadata = Metadata { noted, ..grid.metadata()? };
     metadata.frame_rate = options.fps.or(metadata.frame_rate);
     metadata.drop = options.drop.or(metadata.drop);
     metadata.oriented = options.down.is_some();
@@ -124,7 +124,7 @@ fn joined_up<'a>(
     for (n, region) in regions.iter_mut().enumerate() {
         let title = &titles[n];
         let own = Metadata {
-            drop: metadata.drop.or(title.drop.as_ref().map(|(drop, _)| drop.metres())),
+            drop: metadata.drop.or(title.drop.as_ref().map(|(drop, _)| drop.metres())).or(metadata.noted),
             sigma_height: metadata.sigma_height.or(title.sigma.0),
             sigma_time: metadata.sigma_time.or(title.sigma.1),
             ..metadata
@@ -301,6 +301,7 @@ fn sheets(name: &str, parts: Vec<Part>, options: &ReadOptions) -> Result<Table, 
     let (drawn, mut parts): (Vec<Part>, Vec<Part>) = parts.into_iter().partition(|part| of_chart(&part.name));
     parts.extend(drawn);
     let (mut found, mut aside, mut first): (Vec<(String, Table)>, Vec<_>, _) = (Vec::new(), Vec::new(), None);
+    let mut used = Vec::new();
     for part in parts {
         let label = part.name.trim().to_owned();
         let why = match &options.sheet {
@@ -317,8 +318,17 @@ fn sheets(name: &str, parts: Vec<Part>, options: &ReadOptions) -> Result<Table, 
             aside.push((label, why));
             continue;
         }
+        let table = sheet(name, &part, options, None);
+        used.push((label, part, table));
+    }
+    // What a sheet of notes states holds for the others.
+    if let Some(drop) = stated_in_notes(&used) {
+        let tables = used.iter_mut().filter(|(_, _, table)| !matches!(table, Ok(Err(_))));
+        tables.for_each(|(_, part, table)| *table = sheet(name, part, options, Some(drop)));
+    }
+    for (label, _, table) in used {
         let drawn = options.sheet.is_none() && of_chart(&label) && found.iter().any(|(other, _)| !of_chart(other));
-        match sheet(name, &part, options) {
+        match table {
             Ok(Ok(_)) | Err(_) if drawn => aside.push((label, Why::Elsewhere)),
             Err(error) => return Err(error),
             Ok(Ok(table)) => found.push((label, table)),
@@ -356,6 +366,19 @@ fn sheets(name: &str, parts: Vec<Part>, options: &ReadOptions) -> Result<Table, 
     Ok(table)
 }
 
+/// The height of release, m, that one line of the sheets without a table states, and no other does.
+fn stated_in_notes(sheets: &[(String, Part, Result<Result<Table, TableError>, TableError>)]) -> Option<f64> {
+    let notes = sheets.iter().filter(|(_, _, table)| matches!(table, Ok(Err(_))));
+    let texts = notes.filter_map(|(label, part, _)| match &part.content {
+        Content::Cells(cells) => Grid::open(label, Some(label), cells).ok().map(|grid| title::drops(&grid)),
+        Content::Bytes(_) => None,
+    });
+    match texts.flatten().collect::<Vec<f64>>().as_slice() {
+        [one] => Some(*one),
+        _ => None,
+    }
+}
+
 /// What the names of sheets tell: heights of release, trials, or balls and surfaces; says whether
 /// they are heights.
 fn told_apart(found: &mut [(String, Table)]) -> bool {
@@ -386,7 +409,12 @@ fn joined(one: &str, other: &str) -> String {
 }
 
 /// One sheet: a table; the reason why it is none; or an error in a table that is one.
-fn sheet(name: &str, part: &Part, options: &ReadOptions) -> Result<Result<Table, TableError>, TableError> {
+fn sheet(
+    name: &str,
+    part: &Part,
+    options: &ReadOptions,
+    noted: Option<f64>,
+) -> Result<Result<Table, TableError>, TableError> {
     let inner = format!("{name}/{}", part.name);
     let (decoded, plain);
     let (name, tab, content) = match &part.content {
@@ -416,7 +444,7 @@ fn sheet(name: &str, part: &Part, options: &ReadOptions) -> Result<Result<Table,
         Columns::named(region, options, false).is_ok_and(|columns| columns.values().any(|(n, _, _)| numbers(n)))
     };
     let notes = || region::tables(view).is_empty() && !programs::turned(&grid).as_ref().is_some_and(measured);
-    match read(&grid, options) {
+    match read(&grid, options, noted) {
         Ok(table) => Ok(Ok(table)),
         // What is no table of bounces is left aside; a table that cannot be read is an error.
         Err(problem) if problem.is_of_nothing() || notes() => Ok(Err(problem)),

@@ -10,6 +10,7 @@ use super::heading::{At, DropHeight, Meaning, Role, What};
 use super::region::Region;
 use super::rows::{Row, Rows};
 use super::sequence::LEVEL;
+use super::units::Dimension;
 use super::vocabulary::Atom;
 use super::words::split;
 use crate::error::TableError;
@@ -259,9 +260,27 @@ fn arrives(columns: &Columns, track: &Track) -> bool {
 
 /// No column holds readings of bounces.
 fn nothing(region: &Region<'_>, columns: &Columns) -> TableError {
-    let unknown = columns.columns.iter().position(|c| c.heading.value().is_some() && !c.heading.unknown.is_empty());
+    // Who wrote a row down, in words, is at no fault.
+    let numbers = |n: usize| region.numbers(n).next().is_some();
+    let find = |fits: &dyn Fn(&Column) -> bool| {
+        columns.columns.iter().enumerate().position(|(n, column)| fits(column) && numbers(n))
+    };
+    let unknown = find(&|c| c.heading.value().is_some() && !c.heading.unknown.is_empty());
     if let Some((index, word)) = unknown.and_then(|n| Some((n, columns.columns[n].heading.unknown.first()?))) {
         return columns.unknown(region, index, word);
+    }
+    // What is measured in a unit of a length or a time, and is none of a bounce by its words.
+    let dimension = |c: &Column| c.heading.unit.map(|unit| unit.dimension);
+    let of_another = |c: &Column| {
+        let measured = matches!(dimension(c), Some(Dimension::Length | Dimension::Time));
+        measured && c.kind == Kind::Aside && c.heading.unknown.is_empty() && !c.heading.turns()
+    };
+    if let Some(index) = find(&of_another) {
+        let name = shown(&columns.columns[index].heading.text);
+        return region
+            .header_error(index, format!("what does '{name}' hold? By its words no height and no time of a bounce"))
+            .question()
+            .help("name it by --header, such as 'rebound_cm' or 'air time (s)'; '-' leaves a column aside");
     }
     region
         .error("no column holds heights or times of bounces")

@@ -191,6 +191,8 @@ pub(crate) struct Metadata {
     pub(crate) gravity: Option<f64>,
     /// The height of release, where no column and no row tells it, m.
     pub(crate) drop: Option<f64>,
+    /// The same, as another sheet states it for all of which none states its own.
+    pub(crate) noted: Option<f64>,
     pub(crate) sigma_height: Option<f64>,
     pub(crate) sigma_time: Option<f64>,
     /// Heights are in pixels that nobody has given a scale for: one counts as a metre, and only

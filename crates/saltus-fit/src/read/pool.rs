@@ -124,12 +124,12 @@ fn flown(heights: &Trial, times: &Trial) -> bool {
     !timed && apexes.len() > 1 && contacts.len() == apexes.len() + 1 && flights.zip(&apexes).all(alike)
 }
 
-/// Whether each trial is one height, the mean of the rebounds of other trials of its condition, as
+/// Whether each trial is one height, or one drop from the same height, the mean of the rebounds of other trials of its condition, as
 /// it is rounded: `Mean rebound (m)` of each temperature, in a sheet of its own.
 fn means_of_settings(trials: &[Trial], others: &[Trial]) -> bool {
     let alone = |trial: &Trial| match trial.readings.as_slice() {
         [one] if one.time.is_none() => one.height,
-        _ => None,
+        _ => drop(trial).map(|(_, rebound)| rebound),
     };
     // Groups of one sheet are conditions of the other, where each stands once.
     let key = |trial: &Trial| match trial.group.as_str() {
@@ -139,7 +139,10 @@ fn means_of_settings(trials: &[Trial], others: &[Trial]) -> bool {
     let step = step(trials.iter().filter_map(alone));
     let mean = |trial: &Trial| {
         let own = others.iter().filter(|other| !key(trial).is_empty() && key(other) == key(trial));
-        let rebounds: Vec<f64> = own.filter_map(drop).map(|(_, rebound)| rebound).collect();
+        let from = drop(trial).map(|(height, _)| height);
+        let same = |height: f64| from.is_none_or(|from| (height / from - 1.0).abs() < 1e-9);
+        let drops = own.filter_map(drop).filter(|(height, _)| same(*height));
+        let rebounds: Vec<f64> = drops.map(|(_, rebound)| rebound).collect();
         #[allow(clippy::cast_precision_loss)] // drops of a workbook
         let mean = rebounds.iter().sum::<f64>() / rebounds.len() as f64;
         rebounds.len() > 1 && alone(trial).is_some_and(|height| rounds_to(mean, height, step))
@@ -212,6 +215,7 @@ fn agreed(name: &str, a: &Metadata, b: &Metadata) -> Result<Metadata, TableError
         frame_rate: smaller(a.frame_rate, b.frame_rate),
         gravity: a.gravity.or(b.gravity),
         drop: None,
+        noted: None,
         sigma_height: larger(a.sigma_height, b.sigma_height),
         sigma_time: larger(a.sigma_time, b.sigma_time),
         pixels: a.pixels,

@@ -161,7 +161,9 @@ fn texts(view: View<'_>, span: Range<usize>) -> Vec<LeftAside> {
         let words: Vec<&str> = view.cells(row).filter(|cell| !cell.is_empty()).collect();
         // A number of something else, such as a frame rate, is none of a table.
         let other = |c: usize| matches!(view.read(row, c), Cell::Number(m) if m.unit.is_some_and(|u| u.dimension == Dimension::Other));
-        let numbers = (0..view.width(row)).filter(|&c| view.is_number(row, c) && !other(c)).count();
+        // In brackets stands what was written before them, in another unit.
+        let repeat = |c: usize| c > 0 && view.cell(row, c).starts_with('(') && view.is_number(row, c - 1);
+        let numbers = (0..view.width(row)).filter(|&c| view.is_number(row, c) && !other(c) && !repeat(c)).count();
         (numbers * 2 <= words.len())
             .then(|| LeftAside::new(Part::Text, shown(&words.join(" ")), Why::Note).at(view.line(row, 0)))
     };

@@ -6,11 +6,11 @@ use std::collections::BTreeSet;
 use super::ReadOptions;
 use super::aside::Why;
 use super::cell::{Cell, clock};
-use super::columns::{Columns, Kind, level};
+use super::columns::{Column, Columns, Kind, either, level};
 use super::grid::shown;
 use super::heading::{At, Heading, Role, Value, What};
 use super::region::Region;
-use super::units::{Dimension, Scale};
+use super::units::{Dimension, Scale, Unit};
 use super::vocabulary::{Atom, folded};
 use crate::error::TableError;
 use crate::finding::Note;
@@ -26,6 +26,28 @@ impl Columns {
             let trial = |v: &Value| v.or_trial || v.what == What::Unsaid && !v.trial.is_empty() && v.at == At::Row;
             if rows && column.unit.is_none() && column.value().is_some_and(trial) && region.counts(index) {
                 column.kind = Kind::Trial;
+            }
+        }
+    }
+
+    /// What sums up columns that bear no unit has theirs: `Trial 1,Trial 2,Average (in)`.
+    pub(super) fn summed(&mut self) {
+        let sums = |v: &Value| matches!(v.role, Role::Mean | Role::Max | Role::Min);
+        let units: Vec<Unit> = self.values().filter(|(_, _, v)| sums(v)).filter_map(|(_, c, _)| c.unit).collect();
+        let length = |unit: &&Unit| unit.dimension == Dimension::Length && units.iter().all(|other| other == *unit);
+        let Some(unit) = units.first().filter(length).copied() else { return };
+        let bare = |c: &Column, v: &Value| c.unit.is_none() && v.role == Role::Reading;
+        let silent = |v: &Value| v.what == What::Unsaid && !v.trial.is_empty();
+        if self.values().any(|(_, c, v)| v.role == Role::Reading && !(bare(c, v) && silent(v) || v.at == At::Release)) {
+            return;
+        }
+        for column in &mut self.columns {
+            if let Kind::Value(value) = &mut column.kind
+                && column.unit.is_none()
+                && value.role == Role::Reading
+                && silent(value)
+            {
+                (value.what, column.unit) = (What::Height, Some(unit));
             }
         }
     }
@@ -116,7 +138,7 @@ impl Columns {
     /// Losses that add up from bounce to bounce are how far below the release, at `drop`, the ball
     /// came to: a scale that counts downwards from there.
     pub(super) fn losses(&mut self, drop: Option<f64>) {
-        let lost = |c: &&mut super::columns::Column| c.heading.has(Atom::Lost) && c.holds(What::Height);
+        let lost = |c: &&mut Column| c.heading.has(Atom::Lost) && c.holds(What::Height);
         for column in self.columns.iter_mut().filter(lost) {
             if let (Some(drop), Some(unit)) = (drop, column.unit) {
                 (column.zero, column.sign) = (drop / unit.si(1.0), -1.0);
@@ -181,7 +203,7 @@ impl Columns {
 
     /// Columns that are numbered may be bounces or repeats. Repeats are averaged, or are as high as
     /// one another below the release.
-    pub(super) fn repeats(&mut self, region: &Region<'_>, released: bool) {
+    pub(super) fn repeats(&mut self, region: &Region<'_>, released: bool) -> Result<(), TableError> {
         // Where rows are bounces, columns that are numbered are trials, whatever they hold.
         let rows = self.number().is_some_and(|(_, sure)| sure);
         let numbered = |v: &Value| match v.at {
@@ -203,14 +225,24 @@ impl Columns {
             drop.is_some_and(|(_, c, _)| !c.heading.has(Atom::Release) && c.heading.text.contains(['0', '₀']));
         let drop = drop.map(|(n, _, _)| n);
         if nth.len() < 2 || counted {
-            return;
+            return Ok(());
         }
         let mean = self.columns.iter().any(|c| c.heading.has(Atom::Mean) && c.kind == Kind::Aside);
         let averaged = mean && (drop.is_some() || released);
         // A time until rest is that of a drop, and of no bounce.
         let totals = drop.is_some() && nth.iter().all(|&n| self.columns[n].holds(What::Total));
         if !rows && !averaged && !totals && !level(region, drop, &nth, mean || released) {
-            return;
+            return Ok(());
+        }
+        let trials = nth.iter().any(|&n| self.columns[n].heading.has(Atom::Trial));
+        if !(rows || averaged || totals || trials) && drop.is_some_and(|drop| either(region, drop, &nth)) {
+            let name = |n: usize| shown(&self.columns[n].heading.text);
+            let (first, second) = (name(nth[0]), name(nth[1]));
+            let message = format!("do '{first}' and '{second}' follow one another, or does each begin with a drop?");
+            return Err(region
+                .header_error(nth[1], message)
+                .question()
+                .help("name bounces 'h1 (cm)', 'h2 (cm)' beside 'h0 (cm)', or repeats 'trial 1 (cm)', by --header"));
         }
         let names: Vec<String> = nth.iter().map(|&n| self.columns[n].heading.text.clone()).collect();
         for (&index, count) in nth.iter().zip(counts) {
@@ -219,6 +251,7 @@ impl Columns {
             }
         }
         self.notes.push(Note::Repeats { columns: names });
+        Ok(())
     }
 
     /// Columns of one name, nearly as high as one another, beside a height of release or below one
@@ -360,7 +393,7 @@ impl Columns {
             .filter(|(_, _, v)| v.what == What::Height && (matches!(v.at, At::Nth(_)) || v.at == At::Release))
             .map(|(n, _, _)| n)
             .collect();
-        let energy = |c: &super::columns::Column| folded(&c.heading.text).starts_with("energ");
+        let energy = |c: &Column| folded(&c.heading.text).starts_with("energ");
         let computed = self.columns.iter().any(energy);
         if computed && heights.iter().any(|&n| matches!(self.columns[n].value().map(|v| v.at), Some(At::Nth(_)))) {
             heights.into_iter().for_each(|index| self.leave(index, Why::Computed));

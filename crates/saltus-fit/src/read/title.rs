@@ -3,10 +3,10 @@
 
 use super::Table;
 use super::aside::LeftAside;
-use super::cell::Cell;
+use super::cell::{Cell, spaced};
 use super::clause::{clauses, drop, error, frame_rate, names_rate, of_clauses, states_length};
 use super::datum::{self, Datum};
-use super::grid::shown;
+use super::grid::{Grid, shown};
 use super::heading::{DropHeight, Heading, What};
 use super::phrases::Phrase;
 use super::region::Region;
@@ -60,8 +60,8 @@ pub(super) fn stated(region: &Region<'_>) -> Stated {
     let alone = |row: &usize| (1..region.view.width(*row)).all(|n| region.view.cell(*row, n).is_empty());
     let below = region.rows.iter().rev().take(ROWS).copied().filter(alone);
     let cells = |row: usize| region.view.cells(row).filter(|cell| !cell.is_empty());
-    // Emphasis is no word: `dropped from **1 m**`.
-    let text = |row: usize| cells(row).collect::<Vec<_>>().join(" ").replace('*', "");
+    // Emphasis is no word: `dropped from **1 m**`, and blanks part thousands: `1 016 mm`.
+    let text = |row: usize| cells(row).map(closed).collect::<Vec<_>>().join(" ").replace('*', "");
     let rows: Vec<usize> = above.chain(below).collect();
     let said: Vec<(u64, String)> = rows.iter().map(|&row| (region.view.line(row, 0), text(row))).collect();
     let header = region.view.line(region.header_row, 0);
@@ -90,6 +90,20 @@ pub(super) fn stated(region: &Region<'_>) -> Stated {
         found.name = if cells.len() == 1 && row < region.header_row { text } else { found.name };
     }
     found
+}
+
+/// A cell whose number, by itself or behind a sign, is written without blanks between thousands.
+fn closed(cell: &str) -> String {
+    let (name, number) = cell.rfind(['=', ':']).map_or(("", cell), |at| cell.split_at(at + 1));
+    spaced(number.trim_start()).map_or_else(|| cell.to_owned(), |number| format!("{name} {number}"))
+}
+
+/// The heights of release, m, that lines of a sheet state, each in a cell or in several.
+pub(super) fn drops(grid: &Grid<'_>) -> Vec<f64> {
+    let cells = |row: usize| (0..grid.width(row)).map(move |n| grid.cell(row, n)).filter(|cell| !cell.is_empty());
+    let text = |row: usize| cells(row).map(closed).collect::<Vec<_>>().join(" ");
+    let said = |row: usize| drop(&text(row)).or_else(|| cells(row).find_map(drop));
+    (0..grid.rows().min(ROWS)).filter_map(said).map(|height| height.metres()).collect()
 }
 
 /// The units of times and of heights that the name of a file ends in, `3 balls heights cm`.

@@ -10,6 +10,7 @@ use crate::read::aside::{LeftAside, Part, Why};
 use crate::read::cell::{Cell, read};
 use crate::read::grid::shown;
 use crate::read::heading::{At, Heading, Meaning, Role, Value, What};
+use crate::read::judged::answers;
 use crate::read::named::event;
 use crate::read::region::Region;
 use crate::read::units::Dimension;
@@ -260,6 +261,11 @@ impl Columns {
                     self.leave(index, Why::NotUnderstood);
                     continue;
                 }
+                // What only answers yes or no is a remark, until the CORs differ by it.
+                if cells.iter().all(|cell| answers(cell)) {
+                    self.leave(index, Why::NotUnderstood);
+                    continue;
+                }
                 // Words that come again tell rows apart, whatever stands above them.
                 if 2 * apart <= cells.len() {
                     (self.columns[index].kind, self.columns[index].heading.unknown) = (Kind::Setting, Vec::new());
@@ -305,8 +311,14 @@ impl Columns {
             return error;
         }
         let near = |c: &Column| !c.heading.unknown.is_empty() && !matches!(c.heading.meaning, Meaning::Empty);
-        let index = self.columns.iter().position(|c| near(c) && c.heading.value().is_some());
-        let index = index.or(self.columns.iter().position(|c| !c.heading.unknown.is_empty()));
+        // Words below a name are of no reading.
+        let position = |fits: &dyn Fn(&Column) -> bool| {
+            let mut found = self.columns.iter().enumerate().filter(|(_, c)| fits(c)).map(|(n, _)| n);
+            let first = found.clone().next();
+            found.find(|&n| region.numbers(n).next().is_some()).or(first)
+        };
+        let index = position(&|c| near(c) && c.heading.value().is_some());
+        let index = index.or_else(|| position(&|c| !c.heading.unknown.is_empty()));
         if let Some((index, word)) = index.and_then(|n| Some((n, self.columns[n].heading.unknown.first()?.clone()))) {
             return self.unknown(region, index, &word);
         }

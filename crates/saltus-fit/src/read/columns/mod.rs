@@ -9,8 +9,8 @@ mod gates;
 mod pairs;
 mod shares;
 
-pub(super) use shares::level;
 use shares::of_hundredths;
+pub(super) use shares::{either, level};
 
 use std::collections::HashSet;
 
@@ -20,6 +20,7 @@ use super::cell::dated;
 use super::clause;
 use super::grid::shown;
 use super::heading::{At, Heading, Meaning, Role, Value, What};
+use super::judged::answers;
 use super::named::event;
 use super::region::Region;
 use super::units::{Dimension, Scale, Unit};
@@ -119,6 +120,8 @@ impl Columns {
             });
         }
         found.specimens(region);
+        found.states(region);
+        found.signed(region);
         found.capitals(region);
         found.enumerated();
         found.spans(region);
@@ -129,6 +132,7 @@ impl Columns {
         found.naming(region);
         found.spanning(region);
         found.placed();
+        found.flown();
         found.coupled(region);
         found.deltas(region);
         found.capital(region);
@@ -145,10 +149,11 @@ impl Columns {
         found.not_understood(region)?;
         found.sided();
         found.drops(region);
+        found.summed();
         found.statistics(region, released)?;
         found.paired(region)?;
         found.namesakes(region, released);
-        found.repeats(region, released);
+        found.repeats(region, released)?;
         Ok(found)
     }
 
@@ -259,7 +264,9 @@ impl Columns {
                     && !cells.iter().any(|c| c.is_empty() || event(c).is_some())
             };
             let place = heading.has(Atom::Position) && heading.unit.is_none() && places();
-            if heading.has(Atom::Group) || heading.has(Atom::Label) || place {
+            // What only answers yes or no is a remark, until the CORs differ by it.
+            let asked = region.rows.iter().all(|&row| answers(region.cell(row, index)));
+            if !asked && (heading.has(Atom::Group) || heading.has(Atom::Label) || place) {
                 self.columns[index].kind = Kind::Setting;
             } else {
                 let dated = self.columns[index].holds(What::Time);

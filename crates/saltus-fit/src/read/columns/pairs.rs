@@ -207,6 +207,25 @@ impl Columns {
         }
     }
 
+    /// The flight after the first bounce, the only one beside a height of release, is that of the
+    /// drop of its row.
+    pub(super) fn flown(&mut self) {
+        let read = |v: &Value| v.role == Role::Reading;
+        let nth: Vec<_> = self.values().filter(|(_, _, v)| read(v) && matches!(v.at, At::Nth(_))).collect();
+        let &[(index, column, value)] = nth.as_slice() else { return };
+        let first = value.what == What::Interval && value.at == At::Nth(1) && column.heading.unknown.is_empty();
+        let of_rows = self
+            .values()
+            .any(|(_, c, v)| read(v) && v.at == At::Row && v.what != What::Unsaid && c.heading.unknown.is_empty());
+        let released = self
+            .values()
+            .any(|(_, c, v)| read(v) && (v.what, v.at) == (What::Height, At::Release) && c.heading.unknown.is_empty());
+        if first && released && !of_rows {
+            let trial = value.trial.clone();
+            self.place(index, At::Row, trial);
+        }
+    }
+
     /// `u` beside `v`, `v` beside `v'`, or `v down` beside `v up`: the speeds before and after, as
     /// schools write them.
     pub(super) fn letters(&mut self) {

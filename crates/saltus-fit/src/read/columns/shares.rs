@@ -177,6 +177,18 @@ pub(in crate::read) fn level(region: &Region<'_>, drop: Option<usize>, nth: &[us
     below && ratios(&later).is_some_and(|later| later > LEVEL)
 }
 
+/// Whether heights side by side that look level are as well those of bounces that lose as little:
+/// each is nearer to the part of the one before that the first is of the release than to all of it.
+pub(in crate::read) fn either(region: &Region<'_>, drop: usize, nth: &[usize]) -> bool {
+    let ratio = |a: usize, b: usize| {
+        let all = region.rows.iter().filter_map(|&row| Some(region.view.number(row, b)? / region.view.number(row, a)?));
+        median(&mut all.collect::<Vec<f64>>())
+    };
+    let Some(first) = nth.first().and_then(|&n| ratio(drop, n)) else { return false };
+    let mut later: Vec<f64> = nth.windows(2).filter_map(|w| ratio(w[0], w[1])).collect();
+    median(&mut later).is_some_and(|later| later < 1.0 && (later / first).ln().abs() < later.ln().abs())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -14,6 +14,8 @@ pub(in crate::read) struct DropHeight {
     /// The number, in `unit`.
     pub(in crate::read) value: f64,
     pub(in crate::read) unit: Unit,
+    /// The number of the sign that stands for it, 1 of `H1`: heights after it count on from there.
+    pub(in crate::read) sign: usize,
 }
 
 impl DropHeight {
@@ -114,7 +116,7 @@ pub(in crate::read) fn released(text: &str) -> Option<(DropHeight, &str, &str)> 
         };
         let written = format!("{} {}", &text[at..at + digits], &after[..end]);
         let fits = length && value > 0.0 && !counted && (from || parts.iter().any(word_of_release));
-        fits.then_some((DropHeight { text: written, value, unit }, parts[0], parts[1]))
+        fits.then_some((DropHeight { text: written, value, unit, sign: 0 }, parts[0], parts[1]))
     })
 }
 

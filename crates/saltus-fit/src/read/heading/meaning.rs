@@ -56,7 +56,13 @@ impl Heading {
         if has(Other) || has(Atom::Motion) || flown || self.unit.is_some_and(|u| u.dimension == Dimension::Other) {
             return Meaning::Aside(Why::Other);
         }
-        let what = if intervals { What::Interval } else { self.what() };
+        // A time that names a bounce and the one after it lies between them, whatever stands there.
+        let next = matches!(numbers.bounce.as_slice(), [one, other] if *one > 0 && *other == one + 1);
+        let what = match self.what() {
+            What::Time if next => What::Interval,
+            _ if intervals => What::Interval,
+            what => what,
+        };
         let what = if what == What::Unsaid && self.drop.is_some() { What::Height } else { what };
         if what == What::Unsaid
             && self.unit.is_none()

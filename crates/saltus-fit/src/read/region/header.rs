@@ -4,11 +4,11 @@ use std::ops::Range;
 
 use super::super::cell::Cell;
 use super::super::grid::View;
-use super::super::heading::{At, Heading, Meaning, Role, What};
+use super::super::heading::{At, Heading, Meaning, Role, Value, What};
 use super::super::phrases::Phrase;
 use super::super::sequence::{LEVEL, of_samples};
 use super::super::units::{Dimension, Unit};
-use super::super::vocabulary::meanings;
+use super::super::vocabulary::{ROWS, meanings};
 
 /// A header: its names, the first of its lines, the first row below, and how much of it is
 /// understood.
@@ -30,7 +30,9 @@ impl Header {
     pub(super) fn names_all(&self, view: View<'_>, row: usize) -> bool {
         let says = |name: &String| {
             let heading = Heading::parse(name);
-            heading.understood()
+            // What is known to be left aside has its own name too.
+            let aside = matches!(heading.meaning, Meaning::Aside(_)) && heading.unknown.is_empty();
+            (heading.understood() || aside)
                 && heading.value().is_none_or(|value| value.what != What::Unsaid || value.role != Role::Reading)
         };
         let own = |n: usize| self.names.get(n).filter(|name| !self.names[..n].contains(name));
@@ -63,6 +65,7 @@ pub(super) fn headers(view: View<'_>, row: usize, end: usize) -> Vec<Header> {
         return found;
     }
     let mut push = |names: Vec<String>, next: usize| {
+        let names = united(view, &names, next).unwrap_or(names);
         let score = score(&names);
         let counted = measured(view, &names, next) || sampled(view, &names, next..end);
         let score = if (1..VALUE).contains(&score) && counted { score + VALUE } else { score };
@@ -110,6 +113,28 @@ pub(super) fn headers(view: View<'_>, row: usize, end: usize) -> Vec<Header> {
         push(names, row + 2);
     }
     found
+}
+
+/// The names of columns below which a unit in brackets stands alone at the end, above no number:
+/// it is that of all that bear none, `drop  rebound  (cm)`.
+fn united(view: View<'_>, names: &[String], next: usize) -> Option<Vec<String>> {
+    let last = names.iter().rposition(|name| !name.is_empty())?;
+    let bare = names[last].strip_prefix(['(', '['])?.strip_suffix([')', ']'])?;
+    let unit = Unit::parse(bare).filter(|unit| matches!(unit.dimension, Dimension::Length | Dimension::Time))?;
+    let empty = (next..view.rows()).take(ROWS).all(|row| view.cell(row, last).is_empty());
+    let counts = |n: usize| (next..view.rows()).take(ROWS).all(|row| view.cell(row, n).parse::<usize>().is_ok());
+    let named = |(n, name): (usize, &String)| {
+        let heading = Heading::parse(name);
+        let measured = format!("{name} {}", names[last]);
+        let fits = |v: &Value| v.what.dimension().is_none_or(|d| d == unit.dimension);
+        // `rebound` above anything but a count is of a height.
+        let counted = matches!(heading.meaning, Meaning::Number { .. }) && !counts(n);
+        let of_unit =
+            heading.value().is_some_and(fits) || counted && Heading::parse(&measured).value().is_some_and(fits);
+        if of_unit && heading.unit.is_none() { measured } else { name.clone() }
+    };
+    let found: Vec<String> = names[..last].iter().enumerate().map(named).collect();
+    (empty && last > 0 && found[..] != names[..last]).then_some(found)
 }
 
 /// Whether a row holds a cell of words and nothing else, where several columns are named: it is no
@@ -345,7 +370,8 @@ fn spanned(name: &str, lower: &str) -> String {
         let bare = name.rfind(['(', '[']).map(|at| &name[at..]).filter(|unit| unit.ends_with([')', ']']));
         return bare.map_or(lower.to_owned(), |unit| format!("{lower} {unit}"));
     }
-    let said = own.value().is_some_and(|v| v.what != What::Unsaid);
+    let key = matches!(own.meaning, Meaning::Trial | Meaning::Number { .. } | Meaning::Event | Meaning::Frame);
+    let said = key && own.unknown.is_empty() || own.value().is_some_and(|v| v.what != What::Unsaid);
     if said || matches!(own.meaning, Meaning::Aside(_)) && own.unknown.is_empty() {
         lower.to_owned()
     } else {
