@@ -30,6 +30,7 @@ fn files() -> Vec<PathBuf> {
                 "read/grid/grouped.rs",
                 "read/columns/conditions.rs",
                 "read/columns/gates.rs",
+                "read/columns/signals.rs",
                 "read/sequence.rs",
                 "read/heading/inside.rs",
                 "read/programs.rs",

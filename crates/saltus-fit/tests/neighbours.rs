@@ -193,8 +193,8 @@ proptest! {
         prop_assert!(near(report.cor().unwrap().value, e, 0.006), "{}\n{}", title, report);
     }
 
-    /// What a sheet of notes states holds for the sheets of readings that state none; and a sheet of
-    /// the means of another one counts no more.
+    /// What a sheet of notes states holds for the sheets of readings that state none; and a sheet
+    /// of the means of another one counts no more.
     #[test]
     fn a_sheet_of_notes_states_the_release(
         cors in prop::collection::vec(0.55..0.9_f64, 2),

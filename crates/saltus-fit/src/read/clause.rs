@@ -270,7 +270,8 @@ fn of_all(clause: &str) -> Option<Unit> {
         return Some(unit);
     }
     let last = words.last().is_some_and(|word| Phrase::In.is(&folded(&word.text)));
-    (last && words.len() > 1 && words.iter().take(words.len() - 1).all(plain)).then_some(unit)
+    // A clause may be nothing but the unit: `read at its top, in cm`.
+    (last && words.iter().take(words.len() - 1).all(plain)).then_some(unit)
 }
 
 /// Whether a text states a length and speaks of heights, places or the floor: `the floor is at the

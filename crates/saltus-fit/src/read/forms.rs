@@ -58,6 +58,11 @@ fn listed(text: &str) -> Option<String> {
     // The only line that tells where the ball was dropped from.
     let mut drops = text.lines().filter(|line| clause::drop(line).is_some());
     let drop = drops.next().filter(|_| drops.next().is_none()).map(remarked);
+    // The unit that it states of all heights.
+    let unit = drop.and_then(clause::of_clauses).filter(|unit| unit.dimension == Dimension::Length);
+    let marks = [' ', ':', ',', '.', '(', ')'];
+    let stated = unit.and(drop).into_iter().flat_map(|line| line.split(marks)).find(|word| unit == Unit::parse(word));
+    let stated = stated.map_or(String::new(), |unit| format!(" {unit}"));
     // Lengths by themselves are of bounces below a line that names these, or below the height of
     // release where most fall; there they are of trials where they do not.
     let alone = |line: &str| length(placed(remarked(line).trim()));
@@ -80,6 +85,15 @@ fn listed(text: &str) -> Option<String> {
         let dash = || [" - ", " – ", " — "].iter().find_map(|mark| line.split_once(mark)).filter(named);
         title = named_list(line).map(str::to_owned).or(title.take());
         // Words by themselves are a title, and so is a name with a digit in it, `class 8b`.
+        // A name of which nothing was read keeps its place in the order.
+        let missing = |(name, value): (&str, &str)| {
+            let place = Heading::parse(name).understood() && name.contains(|c: char| c.is_ascii_digit());
+            (place && !value.trim().is_empty() && cell::read(value, false) == Cell::Empty)
+                .then(|| name.trim().to_owned())
+        };
+        if let Some(name) = line.split_once(": ").and_then(missing) {
+            return Some((false, format!("{name}\t-")));
+        }
         if parts(line).0.is_empty() && !line.contains([';', '\t', '|', '=']) && !line.contains("<-") {
             let heading = Heading::parse(line.trim_end_matches(':'));
             let names = !line.contains(',') && (heading.has(Atom::Rebound) || heading.has(Atom::Impact));
@@ -98,9 +112,11 @@ fn listed(text: &str) -> Option<String> {
             Some((true, format!("drop height\t{height} m")))
         };
         // A line that tells where the ball was dropped from names no column.
+        let words = |(_, values): &(&str, &str)| cell::read(values.trim(), false) == Cell::Words;
+        let parted = parted.filter(|parted| !(words(parted) && dropped().is_some()));
         let found = parted.or_else(|| measured(line).filter(|_| dropped().is_none()));
         let Some((name, values)) = found else {
-            let other = || prose(line) || of_others(line) || clause::frame_rate(line).is_some();
+            let other = || prose(line) || of_others(line) || dated(line) || clause::frame_rate(line).is_some();
             return dropped().or_else(|| other().then(|| (false, format!("#{line}"))));
         };
         let number = |value: &String| matches!(cell::read(value, false), Cell::Number(_));
@@ -127,7 +143,11 @@ fn listed(text: &str) -> Option<String> {
         if let Some((title, name)) = name.rsplit_once(',').filter(|_| read && values.len() >= LIST) {
             return Some((true, format!("{title}\r{}\t{}", name.trim(), values.join("\t"))));
         }
-        let spelt = if read { format!("{}\t{}", name.trim(), values.join("\t")) } else { format!("#{line}") };
+        let silent = |value: &String| matches!(cell::read(value, false), Cell::Number(m) if m.unit.is_none());
+        let bare = values.iter().all(silent) && Heading::parse(name).unit.is_none() && of_bounces();
+        let own = if bare { stated.as_str() } else { "" };
+        let cells = || values.iter().map(|value| format!("{value}{own}")).collect::<Vec<_>>().join("\t");
+        let spelt = if read { format!("{}\t{}", name.trim(), cells()) } else { format!("#{line}") };
         (plain || !read && prose(line)).then_some((read, spelt))
     };
     let lines = || text.lines().filter(|line| !line.trim().is_empty());
@@ -155,6 +175,18 @@ fn listed(text: &str) -> Option<String> {
 fn placed(line: &str) -> &str {
     let place = |(name, _): &(&str, &str)| name.parse::<usize>().is_ok() || ordinal(&folded(name)).is_some();
     line.split_once(": ").filter(place).map_or(line, |(_, value)| value.trim())
+}
+
+/// Whether a line names a day, `Tuesday 6 Feb 2024`: its numbers are of one, and no word of it is
+/// of a bounce.
+fn dated(line: &str) -> bool {
+    let day =
+        |part: &Part<'_>| part.number.parse().is_ok_and(|n: u32| (1..=31).contains(&n) || (1990..2100).contains(&n));
+    let (found, rest) = parts(line);
+    let words: Vec<&str> = found.iter().map(|part| part.words).chain([rest]).collect();
+    let heading = Heading::parse(&words.join(" "));
+    let plain = !line.contains(['\t', '|', ';', '=', ':']) && !heading.names_anything();
+    plain && (1..3).contains(&found.len()) && found.iter().all(day) && words.iter().any(|w| !w.is_empty())
 }
 
 /// Whether all numbers of a line are of something else than lengths and times, and it has some:
@@ -194,8 +226,14 @@ fn prose(line: &str) -> bool {
 /// reading.
 fn silent(line: &str) -> bool {
     let error = |part: &Part<'_>| split(part.words).iter().any(|word| word.is(Atom::Error));
-    let unit =
-        |part: &Part<'_>| matches!(cell::read(part.number, false), Cell::Number(m) if m.unit.is_some()) && !error(part);
+    // How large and how heavy a ball is tells nothing of how it bounced.
+    let size = |word: &str| Phrase::Diameter.is(word) || Phrase::Radius.is(word);
+    let of_ball = |part: &Part<'_>| part.words.split(|c: char| !c.is_alphanumeric()).any(|word| size(&folded(word)));
+    let mass = |unit: Option<Unit>| unit.is_some_and(|unit| unit.dimension == Dimension::Other);
+    let unit = |part: &Part<'_>| {
+        let measured = matches!(cell::read(part.number, false), Cell::Number(m) if m.unit.is_some() && !mass(m.unit));
+        measured && !error(part) && !of_ball(part)
+    };
     !line.contains(['\t', '|', ';']) && !parts(line).0.iter().any(unit)
 }
 

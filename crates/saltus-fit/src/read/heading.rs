@@ -468,6 +468,8 @@ impl Heading {
         let named = |n: usize| matches!(words.get(n), Some(Word { kind: Kind::Known(_), .. }));
         let is_unit = |n: usize| match words[n].kind {
             Kind::Known([Atom::Unit(_)]) => true,
+            // `t_us`: behind a time no pronoun.
+            Kind::Known(_) if words[n].text == "us" => n + 1 == words.len() && words[n - 1].is(Atom::Time),
             // `v_in` beside `v_out`.
             Kind::Known(_) => words[n].text == "in" && !named(n + 1) && !words[n - 1].is(Atom::Speed),
             _ => Unit::parse(&words[n].text).is_some(),

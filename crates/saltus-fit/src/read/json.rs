@@ -8,6 +8,7 @@ use std::fmt;
 
 use serde::de::{Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
 
+use super::answers::answers;
 use super::aside::Why;
 use super::cell::{self, Cell};
 use super::heading::{Heading, Meaning};
@@ -229,7 +230,7 @@ fn gathered(name: &str, node: &Node, above: &str, found: &mut Vec<Part>) {
             let unit = |unit: Unit| unit.dimension != Dimension::Other;
             matches!(cell::read(cell, false), Cell::Number(m) if m.unit.is_some_and(unit))
         };
-        let words = |cell: &&str| cell.contains(char::is_alphabetic) && !measured(cell) && !judged::answers(cell);
+        let words = |cell: &&str| cell.contains(char::is_alphabetic) && !measured(cell) && !answers(cell);
         let called = member.members().iter().filter_map(|(_, node)| node.cell()).find(words);
         tables(&called.map_or_else(|| format!("trial {}", n + 1), str::to_owned), member, above, found);
     }

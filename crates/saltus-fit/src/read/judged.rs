@@ -3,49 +3,13 @@
 
 use std::collections::HashSet;
 
+use super::answers::{Answer, answer};
 use super::columns::{Column, Columns, Kind};
 use super::heading::Heading;
 use super::phrases::Phrase;
 use super::region::Region;
-use super::vocabulary::{Atom, ROWS, folded, footnotes, meanings};
-use super::words::{Kind as WordKind, split};
-
-/// What a cell answers.
-#[derive(Clone, Copy, PartialEq)]
-enum Answer {
-    Yes,
-    No,
-    /// Nothing stands in it.
-    Empty,
-    Other,
-}
-
-fn answer(cell: &str) -> Answer {
-    let spelt = folded(cell.trim());
-    if spelt.is_empty() {
-        return Answer::Empty;
-    }
-    let says = |atoms: &[Atom]| match () {
-        () if atoms.contains(&Atom::Nay) || atoms.contains(&Atom::Void) => Answer::No,
-        () if atoms.contains(&Atom::Yes) || atoms.contains(&Atom::Counts) => Answer::Yes,
-        () => Answer::Other,
-    };
-    // A sign by itself is no word of a heading.
-    if let Some(atoms) = meanings(&spelt) {
-        return says(atoms);
-    }
-    match split(cell).first().map(|word| &word.kind) {
-        Some(WordKind::Known(atoms)) => says(atoms),
-        Some(WordKind::Number(0)) => Answer::No,
-        Some(WordKind::Number(1)) => Answer::Yes,
-        _ => Answer::Other,
-    }
-}
-
-/// Whether a cell answers a question, `true`, and says nothing else.
-pub(super) fn answers(cell: &str) -> bool {
-    matches!(answer(cell), Answer::Yes | Answer::No)
-}
+use super::vocabulary::{Atom, ROWS, footnotes};
+use super::words::split;
 
 /// Whether a name and the cell beside it say that what they stand in does not count: `discarded:
 /// true`, `valid: no`.

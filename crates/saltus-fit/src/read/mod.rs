@@ -1,5 +1,6 @@
 //! Tables of measured bounces: releases, contacts and apexes, by trial, in SI units.
 
+mod answers;
 mod aside;
 mod assemble;
 mod cell;
@@ -10,6 +11,7 @@ mod datum;
 mod drops;
 mod encoding;
 mod file;
+mod filed;
 mod foreign;
 mod forms;
 mod grid;

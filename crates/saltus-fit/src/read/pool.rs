@@ -124,8 +124,9 @@ fn flown(heights: &Trial, times: &Trial) -> bool {
     !timed && apexes.len() > 1 && contacts.len() == apexes.len() + 1 && flights.zip(&apexes).all(alike)
 }
 
-/// Whether each trial is one height, or one drop from the same height, the mean of the rebounds of other trials of its condition, as
-/// it is rounded: `Mean rebound (m)` of each temperature, in a sheet of its own.
+/// Whether each trial is one height, or one drop from the same height, the mean of the rebounds of
+/// other trials of its condition, as it is rounded: `Mean rebound (m)` of each temperature, in a
+/// sheet of its own.
 fn means_of_settings(trials: &[Trial], others: &[Trial]) -> bool {
     let alone = |trial: &Trial| match trial.readings.as_slice() {
         [one] if one.time.is_none() => one.height,

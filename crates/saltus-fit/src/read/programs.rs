@@ -6,6 +6,7 @@ use std::collections::HashSet;
 use super::ReadOptions;
 use super::aside::{LeftAside, Part, Why};
 use super::cell::Cell;
+use super::filed;
 use super::grid::{Grid, View};
 use super::heading::{At, Heading, Meaning, What};
 use super::region::{self, Region};
@@ -62,7 +63,8 @@ pub(super) fn tables<'a>(
         return Ok(Recognised { program: Some(Program::Labels), regions: vec![region], tracks: false });
     }
     if numbers(view, 0) {
-        return Ok(vec![bare(view, options, fps)?].into());
+        let named = || filed::table(view).filter(|_| options.fps.is_none() && options.height_unit.is_none());
+        return Ok(vec![named().map_or_else(|| bare(view, options, fps), Ok)?].into());
     }
     let found = region::tables(view);
     let found = if found.is_empty() { turned(grid).into_iter().collect() } else { found };

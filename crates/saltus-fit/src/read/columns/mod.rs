@@ -8,6 +8,7 @@ mod frames;
 mod gates;
 mod pairs;
 mod shares;
+mod signals;
 
 use shares::of_hundredths;
 pub(super) use shares::{either, level};
@@ -15,12 +16,12 @@ pub(super) use shares::{either, level};
 use std::collections::HashSet;
 
 use super::ReadOptions;
+use super::answers::answers;
 use super::aside::{LeftAside, Part, Why};
 use super::cell::dated;
 use super::clause;
 use super::grid::shown;
 use super::heading::{At, Heading, Meaning, Role, Value, What};
-use super::judged::answers;
 use super::named::event;
 use super::region::Region;
 use super::units::{Dimension, Scale, Unit};
@@ -168,6 +169,7 @@ impl Columns {
         self.wordy(region);
         self.respelt(region);
         self.infer(region, options)?;
+        self.signals(region, options);
         self.frames(region, fps, any)?;
         self.clocks(region);
         self.scales(region, options)?;
@@ -271,26 +273,6 @@ impl Columns {
             } else {
                 let dated = self.columns[index].holds(What::Time);
                 self.leave(index, if dated { Why::Note } else { Why::Other });
-            }
-        }
-    }
-
-    /// `h_n` beside `h_n+1`: of a bounce what was before it, and what comes after it.
-    fn placed(&mut self) {
-        let places: Vec<(usize, i8, What)> =
-            self.values().filter_map(|(n, c, v)| Some((n, c.heading.place?, v.what))).collect();
-        for &(index, place, what) in &places {
-            let later = places.iter().any(|p| p.2 == what && p.1 > place);
-            let earlier = places.iter().any(|p| p.2 == what && p.1 < place);
-            if let Kind::Value(value) = &mut self.columns[index].kind
-                && later != earlier
-            {
-                value.at = match (what, later) {
-                    (What::Height, true) => At::Release,
-                    (_, true) => At::Before,
-                    (What::Speed, false) => At::After,
-                    (_, false) => At::Row,
-                };
             }
         }
     }

@@ -207,6 +207,26 @@ impl Columns {
         }
     }
 
+    /// `h_n` beside `h_n+1`: of a bounce what was before it, and what comes after it.
+    pub(super) fn placed(&mut self) {
+        let places: Vec<(usize, i8, What)> =
+            self.values().filter_map(|(n, c, v)| Some((n, c.heading.place?, v.what))).collect();
+        for &(index, place, what) in &places {
+            let later = places.iter().any(|p| p.2 == what && p.1 > place);
+            let earlier = places.iter().any(|p| p.2 == what && p.1 < place);
+            if let Kind::Value(value) = &mut self.columns[index].kind
+                && later != earlier
+            {
+                value.at = match (what, later) {
+                    (What::Height, true) => At::Release,
+                    (_, true) => At::Before,
+                    (What::Speed, false) => At::After,
+                    (_, false) => At::Row,
+                };
+            }
+        }
+    }
+
     /// The flight after the first bounce, the only one beside a height of release, is that of the
     /// drop of its row.
     pub(super) fn flown(&mut self) {

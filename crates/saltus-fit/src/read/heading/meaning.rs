@@ -8,6 +8,11 @@ use super::super::words::{Numbers, Word, numbers, split};
 use super::{At, Heading, Meaning, Role, Value, What};
 
 impl Heading {
+    /// Whether any word of it is of a quantity, an event or a trial, or counts.
+    pub(in crate::read) fn names_anything(&self) -> bool {
+        self.unit.is_some() || self.atoms.iter().any(|atom| atom.measures() || *atom == Atom::Number)
+    }
+
     /// What the words say together.
     pub(super) fn interpret(&self, words: &[Word], run: &str) -> Meaning {
         use Atom::{
