@@ -101,14 +101,14 @@ mod tests {
             ("fallhöhe rücksprunghöhe cm", 2, Some("fallhöhe (cm)|rücksprunghöhe (cm)")),
             ("drop cm rebound cm", 2, Some("drop cm|rebound (cm)")),
             ("drop vs rebound", 2, Some("drop|rebound")),
-            ("zorb vs rebound cm", 2, Some("zorb|rebound (cm)")),
+            ("zorb vs rebound cm", 2, Some("zorb (cm)|rebound (cm)")),
             ("drop vs rebound cm", 3, None),
             ("ball data cm", 2, None),
             ("results", 2, None),
         ] {
             assert_eq!(names(name, count).map(|names| names.join("|")).as_deref(), expected, "{name}");
         }
-        assert!(values(&["zorb".to_owned(), "rebound (cm)".to_owned()]).is_none());
+        assert!(values(&["zorb (cm)".to_owned(), "rebound (cm)".to_owned()]).is_none());
         assert!(values(&["golf".to_owned(), "tennis".to_owned()]).is_none());
     }
 }
