@@ -367,7 +367,7 @@ fn sheets(name: &str, parts: Vec<Part>, options: &ReadOptions) -> Result<Table, 
 }
 
 /// The height of release, m, that one line of the sheets without a table states, and no other does.
-fn stated_in_notes(sheets: &[(String, Part, Result<Result<Table, TableError>, TableError>)]) -> Option<f64> {
+fn stated_in_notes(sheets: &[(String, Part, Sheet)]) -> Option<f64> {
     let notes = sheets.iter().filter(|(_, _, table)| matches!(table, Ok(Err(_))));
     let texts = notes.filter_map(|(label, part, _)| match &part.content {
         Content::Cells(cells) => Grid::open(label, Some(label), cells).ok().map(|grid| title::drops(&grid)),
@@ -408,13 +408,11 @@ fn joined(one: &str, other: &str) -> String {
     [one, other].iter().filter(|part| !part.is_empty()).copied().collect::<Vec<_>>().join(", ")
 }
 
+/// What was read of one sheet: a table; the reason why it is none; or an error in one that is.
+type Sheet = Result<Result<Table, TableError>, TableError>;
+
 /// One sheet: a table; the reason why it is none; or an error in a table that is one.
-fn sheet(
-    name: &str,
-    part: &Part,
-    options: &ReadOptions,
-    noted: Option<f64>,
-) -> Result<Result<Table, TableError>, TableError> {
+fn sheet(name: &str, part: &Part, options: &ReadOptions, noted: Option<f64>) -> Sheet {
     let inner = format!("{name}/{}", part.name);
     let (decoded, plain);
     let (name, tab, content) = match &part.content {

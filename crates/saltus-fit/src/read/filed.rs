@@ -83,10 +83,11 @@ fn names(name: &str, count: usize) -> Option<Vec<String>> {
     // Two names side by side part wherever both are understood.
     let halves = (1..words.len()).map(|at| spelt(vec![&words[..at], &words[at..]]));
     let found: Vec<Vec<String>> = halves.filter(|names| count == 2 && values(names).is_some()).collect();
-    let says =
-        |names: &Vec<String>| values(names).map(|all| all.into_iter().map(|v| v.map(|v| (v.what, v.at))).collect());
-    let all: Vec<Option<Vec<Option<(What, At)>>>> = found.iter().map(says).collect();
-    found.into_iter().next().filter(|_| all.windows(2).all(|pair| pair[0] == pair[1]))
+    let says = |names: &[String]| -> Vec<Option<(What, At)>> {
+        values(names).into_iter().flatten().map(|value| value.map(|v| (v.what, v.at))).collect()
+    };
+    let alike = found.windows(2).all(|pair| says(&pair[0]) == says(&pair[1]));
+    found.into_iter().next().filter(|_| alike)
 }
 
 #[cfg(test)]
