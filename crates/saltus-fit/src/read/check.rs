@@ -21,7 +21,7 @@ const CHANCE: f64 = 6.0;
 pub(super) fn table(table: &mut Table) {
     zeros(table);
     copies(table);
-    if !table.metadata.pixels {
+    if !table.metadata.pixels && !table.metadata.speeds {
         size(table);
     }
 }

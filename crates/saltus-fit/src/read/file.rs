@@ -229,6 +229,7 @@ fn one(region: &mut Region<'_>, options: &ReadOptions, metadata: Metadata) -> Re
     let mut table = assemble::table(region, &mut columns, rows, options, Metadata { frame_rate, ..metadata })?;
     table.metadata.averaged = averaged;
     table.metadata.ratios = columns.of_ratios();
+    table.metadata.speeds = columns.of_speeds();
     table.doubts.extend(doubts.into_iter().flatten().chain(columns.doubts));
     Ok(table)
 }

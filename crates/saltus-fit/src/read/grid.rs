@@ -369,9 +369,11 @@ fn delimiter<'a>(lines: impl Iterator<Item = &'a str>) -> u8 {
     let number = |cell: &str| cell.parse::<f64>().is_ok() || cell::clock(cell).is_some();
     let piped = lines.iter().filter(|line| line.contains('|')).count();
     // A table drawn in characters has lines that are rules, or bars in every line.
-    // Below one there may be a remark.
-    let bars = |line: &&&str| line.matches('|').count() == lines[0].matches('|').count();
-    let drawn = piped == lines.len() || lines.iter().filter(bars).count() == piped && 2 * piped > lines.len();
+    // Above and below one there may be remarks.
+    let bars = |line: &&str| line.matches('|').count();
+    let counts: Vec<usize> = lines.iter().map(bars).skip_while(|n| *n == 0).collect();
+    let level = counts.iter().take(piped).all(|n| *n == counts[0]);
+    let drawn = piped == lines.len() || level && (piped > 2 || 2 * piped > lines.len());
     if piped > 0 && lines.iter().any(|line| rule(line)) || piped > 1 && drawn {
         return b'|';
     }

@@ -204,6 +204,8 @@ pub(crate) struct Metadata {
     pub(crate) averaged: Option<f64>,
     /// Times are sums of times between contacts.
     pub(crate) intervals: bool,
+    /// Heights stand for speeds before and after each bounce.
+    pub(crate) speeds: bool,
     /// Heights are ratios to others.
     pub(crate) ratios: bool,
     /// Which way the heights count was stated, and is not to be recognised.

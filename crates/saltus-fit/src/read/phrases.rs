@@ -86,10 +86,14 @@ pub(super) enum Phrase {
     Lets,
     /// How warm something is.
     Temperature,
+    /// On the way to what a ball bounces from,
+    Inwards,
+    /// and back from it.
+    Outwards,
 }
 
 impl Phrase {
-    const ALL: [(&'static str, Self); 39] = [
+    const ALL: [(&'static str, Self); 41] = [
         ("missing", Self::Missing),
         ("about", Self::About),
         ("half", Self::Half),
@@ -129,6 +133,8 @@ impl Phrase {
         ("up to", Self::UpTo),
         ("lets", Self::Lets),
         ("temperature", Self::Temperature),
+        ("inwards", Self::Inwards),
+        ("outwards", Self::Outwards),
     ];
 
     /// The phrases of this kind, in the order of the file.

@@ -221,6 +221,7 @@ fn agreed(name: &str, a: &Metadata, b: &Metadata) -> Result<Metadata, TableError
         sigma_time: larger(a.sigma_time, b.sigma_time),
         pixels: a.pixels,
         intervals: a.intervals || b.intervals,
+        speeds: a.speeds && b.speeds,
         ratios: a.ratios && b.ratios,
         oriented: a.oriented,
         falls_upwards: a.falls_upwards.or(b.falls_upwards),

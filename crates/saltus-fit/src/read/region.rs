@@ -84,6 +84,23 @@ impl<'a> Region<'a> {
         })
     }
 
+    /// The letters of codes that are numbered in a column, `ITF-` of `ITF-400` and `ITF-401`: those
+    /// of most of its cells are the same, and say nothing of the row.
+    pub(super) fn codes(&self, column: usize) -> Option<String> {
+        let letters = |cell: &str| {
+            let letters = cell.trim_end_matches(|c: char| c.is_ascii_digit());
+            let bare = letters.trim_end_matches(['-', '_', '#', ' ', '.', '/']);
+            let code = letters.len() < cell.len() && !bare.is_empty() && bare.chars().all(|c| c.is_ascii_uppercase());
+            code.then(|| letters.to_owned())
+        };
+        let cells: Vec<&str> = self.rows.iter().map(|&row| self.cell(row, column)).collect();
+        let codes: Vec<(&str, String)> = cells.iter().filter_map(|cell| Some((*cell, letters(cell)?))).collect();
+        let apart: BTreeSet<&str> = codes.iter().map(|(cell, _)| *cell).collect();
+        let alike = codes.windows(2).all(|pair| pair[0].1 == pair[1].1) && apart.len() == codes.len();
+        let most = codes.len() > 1 && 2 * codes.len() > cells.len();
+        codes.first().filter(|_| alike && most).map(|(_, letters)| letters.clone())
+    }
+
     /// An error of the table as a whole.
     pub(super) fn error(&self, message: impl Into<String>) -> TableError {
         TableError::new(self.view.grid.name, message)

@@ -53,6 +53,10 @@ pub(super) fn sifted(region: &Region<'_>, columns: &Columns) -> Result<Rows, Tab
     let void = judged::void(region, columns);
     let summary = summary(region, columns, &used);
     let told_apart = told_apart(region, columns);
+    let codes: Vec<Option<String>> = (0..columns.columns.len()).map(|n| region.codes(n)).collect();
+    let code = |n: usize, row: usize| {
+        codes.get(n).and_then(Option::as_ref).is_some_and(|letters| region.cell(row, n).starts_with(letters.as_str()))
+    };
     let mut last = region.rows.first().map_or(0, |&row| region.view.line(row, 0));
     for &row in &region.rows {
         let line = region.view.line(row, key.unwrap_or(0));
@@ -77,7 +81,8 @@ pub(super) fn sifted(region: &Region<'_>, columns: &Columns) -> Result<Rows, Tab
             found.aside.push(leave(Why::Statistic, Part::Row));
             continue;
         }
-        if told_apart.iter().any(|&n| Heading::parse(region.cell(row, n)).is_predicted()) {
+        let predicted = |&n: &usize| Heading::parse(region.cell(row, n)).is_predicted() && !code(n, row);
+        if told_apart.iter().any(predicted) {
             found.aside.push(leave(Why::Predicted, Part::Row));
             continue;
         }
@@ -107,7 +112,7 @@ pub(super) fn sifted(region: &Region<'_>, columns: &Columns) -> Result<Rows, Tab
                 // `Max` among names of persons is one.
                 let person =
                     columns.columns[column].heading.has(Atom::Repeat) && heading.only() && heading.has(Atom::Max);
-                if heading.sums_up() && !placed && !person {
+                if heading.sums_up() && !placed && !person && !code(column, row) {
                     found.aside.push(leave(Why::Statistic, Part::Row));
                     continue;
                 }

@@ -13,7 +13,7 @@ use super::phrases::Phrase;
 use super::region::Region;
 use super::units::{Dimension, Scale};
 use super::vocabulary::{Atom, ROWS, folded, misspelt};
-use super::words::{Kind, Word, split};
+use super::words::{Kind, Word, pieces, split};
 use crate::error::TableError;
 use crate::finding::Doubt;
 use crate::statistics::median;
@@ -117,6 +117,22 @@ fn turned_round(region: &Region<'_>, columns: &Columns) -> bool {
     turns.len() >= ALIKE && turns.iter().all(|turns| *turns)
 }
 
+/// Whether speeds on the way to something stand beside those on the way back, which are lower in
+/// every row, of which there are several.
+fn in_and_out(region: &Region<'_>, columns: &Columns) -> bool {
+    let named = |phrase: Phrase, at: At| {
+        let names = |c: &Column| pieces(&c.heading.text).iter().any(|word| phrase.is(&folded(word)));
+        columns.values().find(|(_, c, v)| v.what == What::Speed && v.at == at && names(c)).map(|(n, _, _)| n)
+    };
+    let Some((to, back)) = named(Phrase::Inwards, At::Before).zip(named(Phrase::Outwards, At::After)) else {
+        return false;
+    };
+    let number = |row: usize, n: usize| region.view.number(row, n).map(f64::abs);
+    let falls = |&row: &usize| Some(number(row, back)? < number(row, to)?);
+    let falls: Vec<bool> = region.rows.iter().filter_map(falls).collect();
+    falls.len() >= ALIKE && falls.iter().all(|falls| *falls)
+}
+
 /// The doubt whether readings are of a bounce at all, where nothing in the table says so: heights,
 /// speeds, energies and times may be of anything, but heights beside times of contacts, which fall
 /// as a ball does or do not fit, and speeds that turn round. Answered for is what was chosen by an
@@ -126,7 +142,8 @@ pub(super) fn unsaid(region: &Region<'_>, columns: &Columns, options: &ReadOptio
     let answered = options.column.is_some() || options.drop.is_some() || options.sheet.is_some();
     // A ball that blocks a gate on its way down and up has turned round below it.
     let gated = || columns.columns.iter().any(|c| c.turned) && texts(region).any(names_ball);
-    if answered || region.given || region.chosen || turned_round(region, columns) || gated() {
+    let comes_back = || in_and_out(region, columns);
+    if answered || region.given || region.chosen || turned_round(region, columns) || gated() || comes_back() {
         return None;
     }
     let length = |c: &Column| {

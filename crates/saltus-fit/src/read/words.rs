@@ -302,8 +302,15 @@ pub(super) fn pieces(text: &str) -> Vec<String> {
         word.chars().count() < 3 || sign || meanings(&word).is_some()
     };
     let end = |c: char| !c.is_alphanumeric();
+    // Nor is who is short for a name: `Léa M. / Tom K.`.
+    let initial = |part: &str| {
+        let last = part.trim_end().rsplit(' ').next().unwrap_or_default();
+        last.ends_with('.') && last.chars().count() == 2 && last.starts_with(char::is_uppercase)
+    };
     let ratio = |pair: &[&str]| {
-        known(pair[0].split(end).rfind(|w| !w.is_empty())) || known(pair[1].split(end).find(|w| !w.is_empty()))
+        let names = initial(pair[0]) || initial(pair[1].split(" -").next().unwrap_or_default());
+        !names
+            && (known(pair[0].split(end).rfind(|w| !w.is_empty())) || known(pair[1].split(end).find(|w| !w.is_empty())))
     };
     let mut found: Vec<String> = spelt
         .split(|c: char| !c.is_alphanumeric() && !matches!(c, '\u{300}'..='\u{36f}' | '°' | 'º' | 'ª'))
@@ -317,12 +324,15 @@ pub(super) fn pieces(text: &str) -> Vec<String> {
 }
 
 /// The words of a piece: of a script that parts none by blanks the longest that are known, and what
-/// is left of it.
+/// stands between them.
 fn parted(piece: &str) -> Vec<String> {
     let (mut words, mut rest) = (Vec::new(), piece);
     while rest.contains(unparted) {
         let plain = rest.find(unparted).filter(|&at| at > 0);
-        let end = plain.or(first_word(rest).map(str::len)).unwrap_or(rest.len());
+        // What is not known ends where a word of several letters begins that is.
+        let several = |at: &usize| first_word(&rest[*at..]).is_some_and(|word| word.chars().nth(1).is_some());
+        let next = || rest.char_indices().map(|(at, _)| at).skip(1).find(several);
+        let end = plain.or(first_word(rest).map(str::len)).or_else(next).unwrap_or(rest.len());
         words.push(rest[..end].to_owned());
         rest = &rest[end..];
     }

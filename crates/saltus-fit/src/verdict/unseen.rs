@@ -83,6 +83,10 @@ pub(crate) fn in_a_vacuum(
     evidence: Evidence,
     (known, drag): (&Known, f64),
 ) -> Result<Evidence, FitError> {
+    // Speeds before and after a bounce are of no flight through air.
+    if table.metadata.speeds {
+        return Ok(evidence);
+    }
     let few = telling(&evidence);
     let (mut altered, mut before) = (few.clone(), f64::NAN);
     for _ in 0..ROUNDS {

@@ -34,6 +34,7 @@ impl Columns {
     /// What pairs of columns say together.
     pub(super) fn coupled(&mut self, region: &Region<'_>) {
         self.gates(region);
+        self.in_and_out();
         self.contacts(region);
         self.up_to_from(region);
         self.until_rest(region);
@@ -89,6 +90,29 @@ impl Columns {
             self.becomes(index, What::Speed, at);
             self.columns[index].unit = Some(Unit::SPEED);
             self.columns[index].turned = true;
+        }
+    }
+
+    /// `v_in` beside `v_out`, `v hin` beside `v zurück`, whose names differ in that word alone: the
+    /// speeds on the way to what a ball bounces from, and back.
+    fn in_and_out(&mut self) {
+        let speed =
+            |c: &Column| c.heading.has(Atom::Speed) || c.unit.is_some_and(|unit| unit.dimension == Dimension::Speed);
+        let has = |c: &Column, phrase: Phrase| speed(c) && words(c).iter().any(|word| phrase.is(word));
+        let Some((to, back)) = self.pair(|c| has(c, Phrase::Inwards), |c| has(c, Phrase::Outwards)) else { return };
+        let others = |n: usize| {
+            let words = words(&self.columns[n]).into_iter();
+            words.filter(|word| !Phrase::Inwards.is(word) && !Phrase::Outwards.is(word)).collect::<Vec<_>>()
+        };
+        let known = |n: usize| {
+            let heading = &self.columns[n].heading;
+            heading.unknown.iter().all(|word| Phrase::Inwards.is(&folded(word)) || Phrase::Outwards.is(&folded(word)))
+        };
+        let turns = self.columns[to].heading.turns() || self.columns[back].heading.turns();
+        let alike = others(to) == others(back) && self.columns[to].unit == self.columns[back].unit;
+        if alike && known(to) && known(back) && !turns {
+            self.becomes(to, What::Speed, At::Before);
+            self.becomes(back, What::Speed, At::After);
         }
     }
 

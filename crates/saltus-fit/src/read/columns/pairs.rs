@@ -22,8 +22,12 @@ impl Columns {
             let mut cells = region.rows.iter().map(|&row| region.cell(row, index)).filter(|cell| !cell.is_empty());
             let words = |cell: &str| !cell.contains(|c: char| c.is_ascii_digit());
             let named = cells.clone().next().is_some() && cells.all(words);
+            // Balls that bear a code of their own in each row are as many of one kind.
+            let numbered = column.heading.has(Atom::Number) || column.heading.has(Atom::Repeat);
             if column.kind == Kind::Trial && column.heading.has(Atom::Sample) && named {
                 self.columns[index].kind = Kind::Setting;
+            } else if column.kind == Kind::Setting && numbered && region.codes(index).is_some() {
+                self.columns[index].kind = Kind::Trial;
             }
         }
     }
@@ -42,6 +46,13 @@ impl Columns {
         for index in read(What::Height, At::Release) {
             self.leave(index, Why::Elsewhere);
         }
+    }
+
+    /// Whether all readings are speeds before and after a bounce.
+    pub(in crate::read) fn of_speeds(&self) -> bool {
+        let sided = |at: At| self.values().any(|(_, _, v)| v.what == What::Speed && v.at == at);
+        let read = |v: &Value| v.role != Role::Error;
+        sided(At::Before) && sided(At::After) && self.values().all(|(_, _, v)| !read(v) || v.what == What::Speed)
     }
 
     /// `T1`, `T2` beside heights are trials, and no times, where no unit of time is stated.

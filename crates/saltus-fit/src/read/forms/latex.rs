@@ -121,11 +121,12 @@ const STRUCK: [&str; 6] = [r"\sout{", r"\xout{", r"\st{", r"\cancel{", r"\bcance
 /// brackets follow sets what is in these, other commands are words, parts of units among them.
 fn unmarked(row: &str) -> String {
     let spelt = row.replace(r"\pm", "±").replace(r"\%", "%").replace(r"\,", " ").replace(r"\per", "/");
+    let spelt = spelt.replace(r"\sqrt", "√");
     let mut parts = spelt.split('\\');
     let mut found = parts.next().unwrap_or_default().to_owned();
     for part in parts {
         let end = part.find(|c: char| !c.is_ascii_alphabetic()).unwrap_or(part.len());
-        let sets = part[end..].starts_with('{') && !matches!(&part[..end], "frac" | "sqrt");
+        let sets = part[end..].starts_with('{') && &part[..end] != "frac";
         found.push_str(&part[if sets { end } else { 0 }..]);
     }
     found.replace("}{", " ").replace(['$', '{', '}'], "")
