@@ -186,6 +186,142 @@ proptest! {
         prop_assert!(report.groups().is_empty() && near(report.cor().unwrap().value, e, 0.01), "{}", report);
     }
 
+    /// Lines that name two bounces hold the time between them.
+    #[test]
+    fn lines_name_the_bounces_that_a_time_lies_between(
+        e in 0.7..0.9_f64,
+        (title, name, and, unit) in prop::sample::select(vec![
+            ("Tempi tra un rimbalzo e il successivo (in millisecondi):", "tra ", " e ", " ms"),
+            ("Zeiten zwischen den Aufprallen", "zwischen ", " und ", " ms"),
+            ("Times between bounces (ms)", "", "-", ""),
+            ("Tiempos entre botes", "entre ", " y ", " ms"),
+            ("Temps entre les rebonds", "entre ", " et ", " ms"),
+        ]),
+    ) {
+        let row = |n: i32| format!("{name}{n}{and}{}: {:.0}{unit}\n", n + 1, 700.0 * e.powi(n - 1));
+        let report = fit(&format!("{title}\n\n{}", (1..8).map(row).collect::<String>()));
+        prop_assert!(near(report.cor().unwrap().value, e, 0.01), "{}", report);
+    }
+
+    /// Days and times by themselves, below what names impacts, are those of contacts.
+    #[test]
+    fn times_of_day_alone_are_of_contacts(
+        e in 0.7..0.9_f64,
+        title in prop::sample::select(vec!["# hit detector, local time", "impacts, by microphone", "# Aufprall"]),
+    ) {
+        let mut at = 58.493;
+        let row = |n: i32| {
+            at += if n == 0 { 0.0 } else { 0.8 * e.powi(n - 1) };
+            let (minute, second) = if at < 60.0 { (31, at) } else { (32, at - 60.0) };
+            format!("2024-06-18 09:{minute}:{second:06.3}\n")
+        };
+        let report = fit(&format!("{title}\n{}", (0..8).map(row).collect::<String>()));
+        prop_assert!(near(report.cor().unwrap().value, e, 0.01), "{}", report);
+    }
+
+    /// Flights beside contacts that last leave out how long these do.
+    #[test]
+    fn flights_leave_out_how_long_contacts_last(
+        e in 0.6..0.8_f64,
+        names in prop::sample::select(vec![
+            "Contact,Start (s),End (s),Peak force (N),Flight time to next contact (s)",
+            "Contact,Start (s),End (s),Peak force (N),Air time (s)",
+        ]),
+    ) {
+        let mut at = 0.4;
+        let row = |n: i32| {
+            let (begun, flown) = (at, 0.67 * e.powi(n));
+            at += 0.012 + flown;
+            format!("{},{begun:.4},{:.4},{},{flown:.4}\n", n + 1, begun + 0.012, 700 - 90 * n)
+        };
+        let report = fit(&format!("Force plate\n{names}\n{}", (0..6).map(row).collect::<String>()));
+        prop_assert!(near(report.cor().unwrap().value, e, 0.003), "{}", report);
+    }
+
+    /// A unit may stand behind a preposition of one letter, in a heading and in a sentence.
+    #[test]
+    fn prepositions_lead_to_a_unit(
+        e in 0.5..0.8_f64,
+        text in prop::sample::select(vec![
+            "Dropped from 1 m. W tabeli podano wysokość po odbiciu w cm.",
+            "Dropped from 1 m. výška odrazu v cm",
+            "Dropped from 1 m. The table shows the rebound height in cm.",
+            "Dropped from 1 m. Le tableau donne la hauteur du rebond en cm.",
+        ]),
+    ) {
+        let row = |n: usize| {
+            let cell = |k: usize| format!(",{:.1}", 100.0 * (e + 0.05 * n as f64).powi(2) * (1.0 + off(3 * n + k)));
+            format!("{}{}\n", ["wood", "steel"][n], (0..4).map(cell).collect::<String>())
+        };
+        let report = fit(&format!("{text}\nfloor;trial 1;trial 2;trial 3;trial 4\n{}", (0..2).map(row).collect::<String>().replace(',', ";")));
+        prop_assert_eq!(report.groups().len(), 2, "{}", report);
+        prop_assert!(near(report.groups()[0].report.cor().unwrap().value, e, 0.01), "{}", report);
+    }
+
+    /// Messages say how high a ball came, below one that says from where.
+    #[test]
+    fn messages_say_how_high_a_ball_came(
+        e in 0.5..0.8_f64,
+        (from, name, high) in prop::sample::select(vec![
+            ("ok ich lass jetzt immer aus 1,50 m fallen", "Versuch", " hoch gesprungen"),
+            ("we drop it from 1.50 m every time", "try", " high"),
+            ("Wir haben den Ball immer aus 1,50 m fallen lassen", "Versuch", " hoch"),
+        ]),
+    ) {
+        let row = |n: usize| format!("[12.05.24, 16:0{n}:10] Mia: {name} {n}: {:.0} cm{high}\n", 150.0 * e * e * (1.0 + off(n)));
+        let text = format!("[12.05.24, 16:00:11] Jonas: {from}\n{}", (1..6).map(row).collect::<String>());
+        let report = fit(&text);
+        prop_assert!(near(report.cor().unwrap().value, e, 0.02), "{}", report);
+    }
+
+    /// Conditions in the names of programs, above or among the readings.
+    #[test]
+    fn conditions_bear_a_unit_behind_an_underscore(
+        e in 0.5..0.8_f64,
+        name in prop::sample::select(vec!["air_temperature_c", "floor_temp_f", "room_temperature_k", "ball_temp_C"]),
+    ) {
+        let h = |n: i32| 3.0 * e.powi(2 * n);
+        let text = format!("drop_height_m: 3.00\nbounce_heights_m:\n  - {:.3}\n  - {:.3}\n  - {:.3}\n{name}: 21\n", h(1), h(2), h(3));
+        prop_assert!(near(trusted(&text), e, 0.01));
+    }
+
+    /// Sentences count bounces, with an `and` of one letter.
+    #[test]
+    fn sentences_count_bounces_with_short_words(
+        e in 0.6..0.85_f64,
+        text in prop::sample::select(vec![
+            "ho lasciato cadere il pallone da basket da 180 cm. Al primo rimbalzo è arrivato a A cm, al secondo a B cm e al terzo a C cm.",
+            "I dropped the ball from 180 cm. The first bounce came up to A cm, the second to B cm and the third to C cm.",
+        ]),
+    ) {
+        let h = |n: i32| format!("{:.1}", 180.0 * e.powi(2 * n));
+        let text = text.replace("A cm", &(h(1) + " cm")).replace("B cm", &(h(2) + " cm")).replace("C cm", &(h(3) + " cm"));
+        prop_assert!(near(trusted(&text), e, 0.01));
+    }
+
+    /// Names of columns in a line above one row of numbers are those of its columns.
+    #[test]
+    fn names_above_one_row_are_of_its_columns(e in 0.6..0.85_f64, count in 4..7_i32) {
+        let names: Vec<String> = (1..=count).map(|n| format!("Time interval {n} (s)")).collect();
+        let times: Vec<String> = (0..count).map(|n| format!("{:.4}", 0.62 * e.powi(n))).collect();
+        let report = fit(&format!("{}\n{}\n", names.join(","), times.join(",")));
+        prop_assert!(near(report.cor().unwrap().value, e, 0.01), "{}", report);
+    }
+
+    /// Measurements of the first bounce, numbered, beside what they were dropped from.
+    #[test]
+    fn measurements_that_are_numbered_are_repeats(
+        e in 0.6..0.85_f64,
+        (drop, name) in prop::sample::select(vec![
+            ("Bırakma yüksekliği", "sıçrama yüksekliği ölçümü"),
+            ("Drop height", "rebound height measurement"),
+        ]),
+    ) {
+        let row = |n: usize| format!("{n}. {name}: {:.3} m\n", 1.75 * e * e * (1.0 + off(n)));
+        let report = fit(&format!("{drop}: 1.75 m\n{}", (1..6).map(row).collect::<String>()));
+        prop_assert!(one(&report, e), "{}", report);
+    }
+
     /// Who wrote a sheet may be short for a name, which is no ratio.
     #[test]
     fn initials_are_no_ratio(

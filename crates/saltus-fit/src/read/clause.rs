@@ -244,7 +244,9 @@ pub(super) fn error(text: &str) -> Option<(f64, Dimension)> {
 /// `All heights in cm`: the unit of what names none. Every word has to be understood, and nothing
 /// is counted.
 fn unit(text: &str) -> Option<Unit> {
-    let heading = Heading::parse(text);
+    // `In the table stands the height in cm`.
+    let bare = text.trim().split_once(' ').filter(|(first, _)| Phrase::In.is(&first.to_lowercase()));
+    let heading = Heading::parse(bare.map_or(text, |(_, rest)| rest));
     let value = heading.value().filter(|_| heading.unknown.is_empty() && !heading.has(Atom::Release))?;
     let unit = heading.unit.filter(|unit| value.what.dimension() == Some(unit.dimension) && !unit.unscaled());
     let counted = text.contains(|c: char| c.is_ascii_digit());

@@ -9,6 +9,7 @@ mod latex;
 mod noted;
 mod printed;
 mod sentences;
+mod spans;
 mod values;
 mod wiki;
 
@@ -16,7 +17,7 @@ use std::collections::HashMap;
 
 pub(super) use blocks::bulleted;
 pub(super) use printed::{dumped, indexed};
-use values::{LIST, length, listed_numbers, listed_values, named_list};
+use values::{LIST, length, listed_numbers, listed_values, named_list, risen};
 
 use super::cell::{self, Cell};
 use super::clause;
@@ -42,6 +43,7 @@ pub(super) fn table(text: &str) -> Option<String> {
         blocks::records,
         printed::scripted,
         noted::noted,
+        spans::table,
         listed,
         headed,
         patterned,
@@ -120,7 +122,7 @@ fn listed(text: &str) -> Option<String> {
             return dropped().or_else(|| other().then(|| (false, format!("#{line}"))));
         };
         let number = |value: &String| matches!(cell::read(value, false), Cell::Number(_));
-        let values = listed_values(values.trim());
+        let values = listed_values(risen(values.trim()));
         let plain = !name.contains(['\t', ';', ',']) && !name.trim().is_empty();
         // Words are a remark.
         let name = name.trim_end().trim_end_matches(['~', '≈']);

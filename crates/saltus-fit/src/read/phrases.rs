@@ -90,10 +90,12 @@ pub(super) enum Phrase {
     Inwards,
     /// and back from it.
     Outwards,
+    /// The contact that a flight ends at.
+    Next,
 }
 
 impl Phrase {
-    const ALL: [(&'static str, Self); 41] = [
+    const ALL: [(&'static str, Self); 42] = [
         ("missing", Self::Missing),
         ("about", Self::About),
         ("half", Self::Half),
@@ -135,6 +137,7 @@ impl Phrase {
         ("temperature", Self::Temperature),
         ("inwards", Self::Inwards),
         ("outwards", Self::Outwards),
+        ("next", Self::Next),
     ];
 
     /// The phrases of this kind, in the order of the file.

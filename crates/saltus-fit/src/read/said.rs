@@ -48,11 +48,7 @@ fn says(text: &str) -> bool {
         return true;
     }
     let words = split(text);
-    // A ball that hits a floor bounces from it, though much else hits, and floors are of much else.
     let hits = words.iter().any(|word| word.is(Atom::Impact) && word.is(Atom::Loose));
-    if hits && names_ball(text) && words.iter().any(|word| word.is(Atom::Floor)) {
-        return true;
-    }
     // So does what is let go and then hits.
     let lower = folded(text);
     let spelt = |phrase: &&&str| phrase.contains(' ') && lower.contains(**phrase);
@@ -70,6 +66,14 @@ fn says(text: &str) -> bool {
         let loose = atoms.contains(&Atom::Loose) || atoms.contains(&Atom::Top) && plain != "apex";
         bounces && !loose
     })
+}
+
+/// Whether a text says that something hits a floor: a ball bounces from it, though much else hits,
+/// and floors are of much else.
+fn hits_floor(text: &str) -> bool {
+    let words = split(text);
+    let hits = words.iter().any(|word| word.is(Atom::Impact) && word.is(Atom::Loose));
+    hits && words.iter().any(|word| word.is(Atom::Floor))
 }
 
 /// The name of a file without its folder and ending.
@@ -168,7 +172,8 @@ pub(super) fn unsaid(region: &Region<'_>, columns: &Columns, options: &ReadOptio
     let fast = read().any(|(_, _, v)| v.what == What::Speed);
     let turned = [At::Before, At::After].map(|at| read().any(|(_, _, v)| v.what == What::Speed && v.at == at));
     let met = |text: &str| hits_wall(text) || turned == [true, true] && ball_and_wall(text);
-    let told = |text: &str| says(text) || fast && met(text);
+    let ball = texts(region).any(names_ball);
+    let told = |text: &str| says(text) || ball && hits_floor(text) || fast && met(text);
     let column = open.map(|(_, column, _)| column).or_else(parts).filter(|_| !texts(region).any(told))?;
     Some(Doubt::Unsaid { column: shown(&column.heading.text) })
 }

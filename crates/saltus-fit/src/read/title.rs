@@ -181,6 +181,7 @@ pub(super) fn doubted(region: &Region<'_>, table: &mut Table) {
         Some(format!("{}{after}", &text[..at]))
     };
     let turned = |text: &str| match (frame_rate(text), by_rule(text)) {
+        _ if text.split([':', '=', ',', ';', '\t']).next().is_some_and(names_rate) => false,
         (Some(_), _) => turns(&text.replace("rate", "")),
         (None, Some(text)) => turns(&text),
         (None, None) => turns(text),

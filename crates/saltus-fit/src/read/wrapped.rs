@@ -5,6 +5,7 @@ use super::cell;
 use super::heading::{Heading, What};
 use super::phrases::Phrase;
 use super::vocabulary::Atom;
+use super::words::split;
 
 /// A text without the `>` before the lines that a mail quotes, where most are; of a few such lines
 /// each is what somebody typed at a console, and no reading. `None` if there is none.
@@ -117,7 +118,7 @@ const FRAMES: u32 = 60;
 /// but that the ball hit the floor the times are the readings. `None` where lines bear no times.
 pub(super) fn unstamped(text: &str) -> Option<String> {
     let filled = || text.lines().filter(|line| !line.trim().is_empty());
-    if let Some(times) = hits(text) {
+    if let Some(times) = hits(text).or_else(|| bare_stamps(text)) {
         return Some(times);
     }
     let stamps: Vec<Stamped<'_>> = filled().filter_map(stamped).collect();
@@ -153,6 +154,29 @@ fn hits(text: &str) -> Option<String> {
         Some((time, _)) => time.to_owned(),
         None if line.trim().is_empty() => String::new(),
         None => format!("#{line}"),
+    };
+    Some(text.lines().enumerate().map(spelt).collect::<Vec<_>>().join("\n") + "\n")
+}
+
+/// Days and times by themselves, to a part of a second, below a line that names impacts: `# hits`.
+fn bare_stamps(text: &str) -> Option<String> {
+    let bare = |line: &str| {
+        let exact = line.rsplit(':').next().is_some_and(|s| s.contains(['.', ',']));
+        let parted = line.trim().find([' ', 'T']).is_some_and(|at| cell::date(&line.trim()[..at]));
+        parted && exact && cell::clock(line).is_some()
+    };
+    let first = text.lines().position(bare)?;
+    let names = |line: &str| split(line).iter().any(|word| word.is(Atom::Impact) && !word.is(Atom::Other));
+    let mut below = text.lines().skip(first).filter(|line| !line.trim().is_empty());
+    let several = below.clone().nth(2).is_some();
+    if !several || !below.all(bare) || !text.lines().take(first).any(names) {
+        return None;
+    }
+    let spelt = |(n, line): (usize, &str)| match bare(line) {
+        true if n == first => format!("time of impact\r{line}"),
+        true => line.to_owned(),
+        false if line.trim().is_empty() => String::new(),
+        false => format!("#{}", line.trim_start_matches('#')),
     };
     Some(text.lines().enumerate().map(spelt).collect::<Vec<_>>().join("\n") + "\n")
 }

@@ -36,6 +36,7 @@ impl Columns {
         self.gates(region);
         self.in_and_out();
         self.contacts(region);
+        self.flights(region);
         self.up_to_from(region);
         self.until_rest(region);
     }
@@ -139,6 +140,33 @@ impl Columns {
         if ordered && contact < SHORT * flight {
             self.becomes(on, What::Time, At::Row);
             self.leave(off, Why::Elsewhere);
+        }
+    }
+
+    /// Flights beside the times of contacts that they lie between: they leave out how long each
+    /// contact lasts, and so are what the COR is of.
+    fn flights(&mut self, region: &Region<'_>) {
+        let of = |what: What| {
+            let read = |c: &Column| c.value().is_some_and(|v| v.what == what && v.at == At::Row && v.trial.is_empty());
+            let known = |c: &Column| c.heading.unknown.iter().all(|word| Phrase::Next.is(&folded(word)));
+            self.only(|c| read(c) && known(c))
+        };
+        let Some((time, flight)) = of(What::Time).zip(of(What::Interval)) else { return };
+        if !self.columns[flight].heading.has(Atom::Air) || self.columns[time].unit != self.columns[flight].unit {
+            return;
+        }
+        let number = |row: usize, n: usize| region.view.number(row, n);
+        let lasted = |pair: &[usize]| {
+            let between = number(pair[1], time)? - number(pair[0], time)?;
+            number(pair[0], flight).map(|flown| (between - flown) / flown)
+        };
+        let parts: Vec<f64> = region.rows.windows(2).filter_map(lasted).collect();
+        if parts.len() > 1
+            && parts.len() + 1 == region.rows.len()
+            && parts.iter().all(|part| (0.0..SHORT).contains(part))
+        {
+            self.leave(time, Why::Elsewhere);
+            self.becomes(flight, What::Interval, At::Row);
         }
     }
 

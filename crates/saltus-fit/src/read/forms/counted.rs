@@ -46,7 +46,8 @@ pub(super) fn table(text: &str) -> Option<String> {
     let counted = bounces.iter().filter(|part| part.place.is_some()).count();
     let turned =
         [Atom::Predicted, Atom::Goal, Atom::Lost, Atom::Derived, Atom::Error, Atom::Mean, Atom::Void, Atom::Percent];
-    let turns = |word: &Word| turned.iter().any(|atom| word.is(*atom));
+    // A letter by itself is a word of a sentence: `e` is `and`.
+    let turns = |word: &Word| word.text.chars().nth(1).is_some() && turned.iter().any(|atom| word.is(*atom));
     if !falls || !in_order || !alike || counted < 2 || found.iter().any(|part| part.words.iter().any(turns)) {
         return None;
     }

@@ -2,7 +2,10 @@
 
 use super::super::cell::{self, Cell};
 use super::super::heading::Heading;
+use super::super::phrases::Phrase;
 use super::super::units::{Dimension, Unit};
+use super::super::vocabulary::{Atom, folded};
+use super::super::words::{Word, split};
 
 /// A name in a line by itself stands before at least so many numbers.
 pub(super) const LIST: usize = 3;
@@ -31,6 +34,21 @@ pub(super) fn listed_values(list: &str) -> Vec<String> {
     values.iter().map(|v| if shared && plain(v) { format!("{v} {unit}") } else { (*v).to_owned() }).collect()
 }
 
+/// A length without the words behind it that say no more than that a ball came so high: `64 cm
+/// high`, `64 cm hoch gesprungen`.
+pub(super) fn risen(text: &str) -> &str {
+    let says = |word: &Word| {
+        word.is(Atom::Rebound) || word.is(Atom::Filler) || word.is(Atom::Height) || Phrase::Rose.is(&folded(&word.text))
+    };
+    let ends = text.char_indices().filter(|(_, c)| *c == ' ').map(|(at, _)| at);
+    let high = |at: &usize| {
+        let words = split(&text[*at..]);
+        length(&text[..*at]).is_some() && !words.is_empty() && words.iter().all(says)
+    };
+    let end = ends.filter(high).min();
+    end.filter(|end| !text[*end..].contains(|c: char| c.is_ascii_digit())).map_or(text, |end| &text[..end])
+}
+
 /// The length that a text is and nothing else, m.
 pub(super) fn length(text: &str) -> Option<f64> {
     match cell::read(text, false) {
@@ -52,6 +70,12 @@ pub(super) fn named_list(line: &str) -> Option<&str> {
         let heading = Heading::parse(part);
         heading.unit.is_some() && heading.understood()
     };
-    let mut found = line.split(", ").map(|part| part.trim().trim_end_matches(':')).filter(names);
+    // As many names as commas part are those of columns.
+    let columns = |line: &str| line.split(',').filter(|part| Heading::parse(part).unit.is_some()).count() > 1;
+    let mut found = Some(line)
+        .filter(|line| !columns(line))?
+        .split(", ")
+        .map(|part| part.trim().trim_end_matches(':'))
+        .filter(names);
     found.next().filter(|_| found.next().is_none())
 }

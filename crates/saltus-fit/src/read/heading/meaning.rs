@@ -2,9 +2,10 @@
 //! are no readings.
 
 use super::super::aside::Why;
+use super::super::phrases::Phrase;
 use super::super::units::{Dimension, Scale, Unit};
 use super::super::vocabulary::{Atom, folded};
-use super::super::words::{Numbers, Word, numbers, split};
+use super::super::words::{Kind, Numbers, Word, numbers, split};
 use super::{At, Heading, Meaning, Role, Value, What};
 
 impl Heading {
@@ -229,5 +230,50 @@ impl Heading {
             at => at,
         };
         Some(Value { at, position: false, or_trial: false, ..value })
+    }
+
+    /// A unit among the words, but not as the first: `height_cm`, `height in cm`, where the inch is
+    /// a preposition.
+    pub(super) fn take_unit_word(&mut self, words: &mut Vec<Word>) {
+        // `temp_C`, `air_temperature_c`: a letter behind a temperature is its unit.
+        let snake = self.text.contains('_');
+        if let [.., of, last] = words.as_slice()
+            && (matches!(last.text.as_str(), "C" | "F" | "K") || snake && matches!(last.text.as_str(), "c" | "f" | "k"))
+            && Phrase::Temperature.is(&folded(&of.text))
+        {
+            self.unit = Unit::parse("°C");
+            words.pop();
+            return;
+        }
+        // Before a word that is known the inch is a preposition: `height in cm`, `time in air`.
+        let named = |n: usize| matches!(words.get(n), Some(Word { kind: Kind::Known(_), .. }));
+        let is_unit = |n: usize| match words[n].kind {
+            Kind::Known([Atom::Unit(_)]) => true,
+            // `t_us`: behind a time no pronoun.
+            Kind::Known(_) if words[n].text == "us" => n + 1 == words.len() && words[n - 1].is(Atom::Time),
+            // `v_in` beside `v_out`.
+            Kind::Known(_) => words[n].text == "in" && !named(n + 1) && !words[n - 1].is(Atom::Speed),
+            _ => Unit::parse(&words[n].text).is_some(),
+        };
+        let mut found: Vec<usize> = (1..words.len()).filter(|&n| is_unit(n)).collect();
+        if found.len() > 1 && Phrase::In.is(&words[found[0]].text) {
+            found.remove(0);
+        }
+        // The same unit may stand behind an error as well: `height / m ± 0.01 m`.
+        let stated = |n: &&usize| self.unit.is_none() || self.unit == Unit::parse(&words[**n].text);
+        if let Some(&n) = found.first().filter(stated) {
+            self.unit = Unit::parse(&words[n].text);
+            words.remove(n);
+            // `výška v cm`, `wysokość w cm`: what stands before the unit leads to it.
+            if n > 1 && words[n - 1].text.chars().count() == 1 && Phrase::In.is(&words[n - 1].text) {
+                words.remove(n - 1);
+            }
+        } else if let [word] = words.as_slice()
+            && (matches!(word.kind, Kind::Known([Atom::Unit(_)]))
+                || matches!(word.kind, Kind::Unknown) && Unit::parse(&word.text).is_some())
+        {
+            self.unit = self.unit.or(Unit::parse(&words[0].text));
+            words.clear();
+        }
     }
 }
