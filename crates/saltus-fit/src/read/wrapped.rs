@@ -161,9 +161,11 @@ fn hits(text: &str) -> Option<String> {
 /// Days and times by themselves, to a part of a second, below a line that names impacts: `# hits`.
 fn bare_stamps(text: &str) -> Option<String> {
     let bare = |line: &str| {
-        let exact = line.rsplit(':').next().is_some_and(|s| s.contains(['.', ',']));
+        let exact = line.rsplit(':').next().is_some_and(|s| s.contains('.'));
         let parted = line.trim().find([' ', 'T']).is_some_and(|at| cell::date(&line.trim()[..at]));
-        parted && exact && cell::clock(line).is_some()
+        // What a mark of a table parts from a time is a cell.
+        let alone = |c: char| c.is_ascii_digit() || matches!(c, '-' | '/' | '.' | ':' | ' ' | 'T' | 'Z');
+        parted && exact && line.trim().chars().all(alone) && cell::clock(line).is_some()
     };
     let first = text.lines().position(bare)?;
     let names = |line: &str| split(line).iter().any(|word| word.is(Atom::Impact) && !word.is(Atom::Other));
