@@ -13,8 +13,8 @@ use crate::state::State;
 use crate::step::Stepper;
 use crate::time::Time;
 
-use super::Advance;
 use super::shared::Step;
+use super::{Advance, Wall};
 
 /// A guard that falls this many times as fast as its own reset left it was driven on since.
 /// Held by `retaken::falls_a_hair_apart_are_taken_once_each`.
@@ -32,7 +32,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         only: Option<A::Edge>,
     ) -> Result<Option<A::Edge>, Error> {
         let t = now.seconds();
-        let (mut zero, mut nudged) = (None, None);
+        let mut nudged = None;
         self.memory.walls.clear();
         let edges = self.automaton.edges(mode);
         if let Some(flaw) = edges.flaw() {
@@ -54,13 +54,16 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 continue;
             }
             let x = &x.clone();
-            if self.is_entered(mode, edge, t, x, g, &mut zero)? {
-                let first = self.first_of(mode, t, x, zero, edge);
-                if first != edge {
-                    self.memory.slack = 0.0;
+            match self.is_entered(mode, edge, t, x, g) {
+                Ok(false) => {}
+                due => {
+                    let first = match self.first_of(mode, t, x) {
+                        Some(first) => first,
+                        None => due.map(|_| edge)?,
+                    };
+                    self.note_switch(first, x);
+                    return Ok(Some(first));
                 }
-                self.note_switch(first, x);
-                return Ok(Some(first));
             }
         }
         Ok(None)
@@ -111,15 +114,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
 
     /// Whether an edge whose guard is neither clear of zero nor spent is to be taken at once.
     #[inline(never)]
-    fn is_entered(
-        &mut self,
-        mode: A::Mode,
-        edge: A::Edge,
-        t: f64,
-        x: &A::State,
-        g: f64,
-        zero: &mut Option<A::Edge>,
-    ) -> Result<bool, Error> {
+    fn is_entered(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State, g: f64) -> Result<bool, Error> {
         if g.is_nan() {
             return Err(guard_undefined(self.automaton, mode, edge, t, x));
         }
@@ -132,8 +127,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
         if g >= 0.0 {
             if !spent && g == 0.0 {
-                *zero = zero.or(Some(edge)); // one that falls at once is found like every other crossing
-                self.memory.at_wall(edge, g);
+                self.memory.at_wall(edge, g); // one that falls at once is found like every other crossing
             } else if !spent {
                 self.find_wall(edge, t, x, g);
             }
@@ -217,10 +211,21 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         left
     }
 
-    /// Of an edge to be taken at once and one listed before it whose guard is zero, the latter if
-    /// its guard falls.
-    fn first_of(&mut self, mode: A::Mode, t: f64, x: &A::State, zero: Option<A::Edge>, edge: A::Edge) -> A::Edge {
-        zero.filter(|&zero| self.guard_slope(mode, zero, t, x, 0.0, 0.0) < 0.0).unwrap_or(edge)
+    /// Of the edges listed before one that is due at once, or refused, the first whose guard is zero
+    /// but for rounding and falls: in the order listed it is taken before.
+    #[cold]
+    fn first_of(&mut self, mode: A::Mode, t: f64, x: &A::State) -> Option<A::Edge> {
+        for k in 0..self.memory.walls.len() {
+            let Wall { edge, level, .. } = self.memory.walls[k];
+            let still = self.still(edge, t, x, level);
+            let slope = self.guard_slope(mode, edge, t, x, level, still);
+            let longest = self.glance().max(FAR * self.tick(t));
+            if slope < 0.0 && -slope * longest > ROUNDINGS * still {
+                self.memory.slack = FEW * level.abs();
+                return Some(edge);
+            }
+        }
+        None
     }
 
     /// The longest time over which a guard's slope is looked at: a part of the last arc's duration,

@@ -1,0 +1,86 @@
+//! What is due as a mode is entered, in the order listed.
+
+#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
+
+mod methods;
+
+use proptest::prelude::*;
+use saltus::{Entry, ErrorKind, Hybrid, Polynomial, Simulation};
+
+use methods::methods;
+
+/// What the guard of an edge does as the mode is entered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Due {
+    /// Zero, and goes up.
+    Rises,
+    /// Zero, and goes down.
+    Falls,
+    /// Below zero, and taken.
+    Fires,
+    /// Below zero, and an error.
+    Refused,
+    /// Below zero, and to be let in.
+    Waits,
+    /// Above zero.
+    Inside,
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1000))]
+
+    /// Of any list of guards the first that is due is taken, or refused, at once.
+    #[test]
+    fn what_is_due_on_entry_is_taken_in_the_order_listed(
+        list in prop::collection::vec((prop::sample::select(vec![
+            Due::Rises, Due::Falls, Due::Fires, Due::Refused, Due::Waits, Due::Inside,
+        ]), -3.0..3.0_f64, 1..4_i32), 1..6),
+        wall in prop::sample::select(vec![0.0, 1.0, -3.7]),
+        power in -6..6_i32,
+        method in 0..4_usize,
+        affine: bool,
+        solved: bool,
+    ) {
+        let rate = 10_f64.powi(power);
+        let mut model = Hybrid::new()
+            .mode("start", move |_t, _x: &f64| rate)
+            .mode("went", |_t, _x| 0.0);
+        if solved {
+            model = model.exact("start", move |_t, x| Polynomial::from([*x, rate]));
+        }
+        for &(due, steepness, order) in &list {
+            let by = 10_f64.powf(steepness);
+            // Beside a number of its own size a power of a short time is lost.
+            let order = if affine || wall != 0.0 { 1 } else { order };
+            let (sign, at) = match due {
+                Due::Rises => (by, 0.0),
+                Due::Falls => (-by, 0.0),
+                Due::Inside => (by, by),
+                _ => (-by, -by),
+            };
+            let entry = match due {
+                Due::Fires => Entry::Fire,
+                Due::Waits => Entry::Wait,
+                _ => Entry::Refuse,
+            };
+            model = model.edge("start", "went", move |_t, x| at + sign * (x - wall).powi(order), |_t, x| *x).entry(entry);
+            if affine {
+                model = model.affine();
+            }
+        }
+        let run = Simulation::of(&model).stepper(methods()[method]).run("start", wall, 0.0..0.5 / rate);
+        let due = list.iter().position(|(due, ..)| matches!(due, Due::Falls | Due::Fires | Due::Refused));
+        // What falls as a power of time is taken where that is beyond rounding.
+        let late = due.map_or(0.0, |k| if list[k].2 == 1 || affine || wall != 0.0 { 1e-12 } else { 1e-2 });
+        match due {
+            Some(k) if list[k].0 == Due::Refused => prop_assert_eq!(run.unwrap_err().error.kind(), ErrorKind::Entry),
+            Some(k) => {
+                let run = run.unwrap();
+                let jump = run.trajectory.jumps()[0];
+                prop_assert_eq!(jump.edge().map(|edge| edge.place), Some(k));
+                prop_assert!(jump.t() * rate <= late, "{}", jump.t() * rate);
+            }
+            None => prop_assert_eq!(run.unwrap().end.jumps, 0),
+        }
+    }
+}
