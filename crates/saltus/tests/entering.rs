@@ -1,11 +1,11 @@
-//! What is due as a mode is entered, in the order listed.
+//! What is due as a mode is entered: in the order listed, and not again where a jump has left it.
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
 mod methods;
 
 use proptest::prelude::*;
-use saltus::{Entry, ErrorKind, Hybrid, Polynomial, Simulation};
+use saltus::{Entry, ErrorKind, Hybrid, Polynomial, Simulation, Stop};
 
 use methods::methods;
 
@@ -81,6 +81,40 @@ proptest! {
                 prop_assert!(jump.t() * rate <= late, "{}", jump.t() * rate);
             }
             None => prop_assert_eq!(run.unwrap().end.jumps, 0),
+        }
+    }
+
+    /// A guard that leaps is taken once where it leaps, whatever of the state the reset changes
+    /// that does not lead away from there; and again where it leaps again.
+    #[test]
+    fn a_guard_that_leaps_is_taken_once(
+        at in 0.1..0.9_f64,
+        [inside, outside] in prop::array::uniform2(-3..3_i32),
+        (offset, power) in (prop::sample::select(vec![0.0, 1.0, -1e3, 1e6]), -6..6_i32),
+        count in prop::sample::select(vec![0.0, 1.0, 1e-9, -1e6]),
+        (of_time, solved, waits) in any::<(bool, bool, bool)>(),
+        method in 0..4_usize,
+    ) {
+        let (inside, outside) = (10_f64.powi(inside), -(10_f64.powi(outside)));
+        let rate = 10_f64.powi(power);
+        let guard = move |t: f64, x: &[f64; 2]| {
+            let at_last = if of_time { t * rate } else { x[0] - offset };
+            if at_last < at { inside } else { outside }
+        };
+        let mut model = Hybrid::new().mode("run", move |_t, _x: &[f64; 2]| [rate, 0.0]);
+        if solved {
+            model = model.exact("run", move |_t, x| Polynomial::from([*x, [rate, 0.0]]));
+        }
+        let model = model.edge("run", "run", guard, move |_t, x| [x[0], x[1] + count]);
+        let model = if waits { model.entry(Entry::Wait) } else { model };
+        let simulation = Simulation::of(&model).stepper(methods()[method]).most_jumps(100);
+        let run = simulation.run("run", [offset, 0.0], 0.0..1.0 / rate);
+        if waits {
+            let run = run.unwrap();
+            prop_assert_eq!((run.end.stop, run.end.jumps), (Stop::Time, 1));
+            prop_assert!((run.trajectory.jumps()[0].t() * rate - at).abs() < 1e-9);
+        } else {
+            prop_assert_eq!(run.unwrap_err().error.kind(), ErrorKind::Entry);
         }
     }
 }

@@ -161,7 +161,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     }
 
     /// After the jump by `edge` from `before` to `after` in mode `to`: a guard that leapt there has
-    /// no root to be spent, unless the state has stayed where it leaps.
+    /// no root to be spent, unless it leaps there still.
     #[inline]
     pub(crate) fn landed(&mut self, edge: A::Edge, before: &A::State, (to, t, after): (A::Mode, f64, &A::State)) {
         if mem::take(&mut self.memory.leapt) {
@@ -181,10 +181,23 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if g > 0.0 {
             let still = self.still(edge, t, after, g);
             let slope = self.guard_slope(to, edge, t, after, g, still);
-            if g > SURELY * (slope.abs() * self.tick(t) + still) {
+            if g > SURELY * (slope.abs() * self.tick(t) + still) && !self.leaps_ahead(to, edge, t, after) {
                 self.unspend(edge);
             }
         }
+    }
+
+    /// Whether a guard that leapt at the last crossing does so on the way from `x` as well, within
+    /// the rounding of time and state: a reset of other coordinates has not led away from there.
+    fn leaps_ahead(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State) -> bool {
+        let slope = self.flow(mode, t, x);
+        let by = FAR * self.tick(t);
+        let ahead = x.with(|i| {
+            let (rate, rounding) = (slope.get(i), FAR * f64::EPSILON * self.size(x, i));
+            if rate == 0.0 { x.get(i) } else { x.get(i) + (by * rate.abs() + rounding).copysign(rate) }
+        });
+        self.memory.stats.guards += 1;
+        self.guard(edge, t + by, &ahead) < 0.0
     }
 
     /// Whether a guard that went on falling from its spent root, by no more than the rounding of

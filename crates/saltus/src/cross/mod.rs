@@ -216,6 +216,16 @@ mod tests {
         assert_eq!(first_fall(|s| -s, 1.0, Start::Spent).unwrap().fall, None);
     }
 
+    /// A spent root at any value, as one beyond a leap is, is left where the guard moves from it.
+    #[test]
+    fn what_stands_below_zero_has_not_fallen_again() {
+        for value in [-1.0, -0.1, -1e-9, -1e9] {
+            assert_eq!(first_fall(|_| value, 1.0, Start::Spent).unwrap().fall, None);
+            let next = first_fall(|s| if s < 0.3 { value } else { 0.7 - s }, 1.0, Start::Spent).unwrap();
+            assert_eq!(next.fall.unwrap().inside, 0.7);
+        }
+    }
+
     #[test]
     fn undefined_before_the_fall_is_said_and_after_it_is_not() {
         assert!(matches!(first_fall(|s| (0.5 - s).sqrt() + 1.0, 1.0, Start::Open), Err(Undefined(s)) if s > 0.49));

@@ -196,7 +196,7 @@ impl Search<'_> {
         {
             return Ok(Next::Part(Part::AtStart));
         }
-        let order = || Some(order(p.start(), p.end(), a, b));
+        let order = || Some(order(start - base, end - base, a, b));
         Ok(Next::Part(match q.shape(q_margin) {
             Shape::Above if side == Side::Outside => Part::None(Side::beside(start.max(end), side, base)),
             Shape::Above => Part::None(Side::Inside),
