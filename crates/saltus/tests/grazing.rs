@@ -14,11 +14,12 @@ use saltus::{Certificate, Entry, Filippov, Hybrid, Side, Sides, Simulation};
 use methods::methods;
 
 /// How often a guard falls that turns `miss` above zero (below, if negative) three times, at x = -1
-/// of an oscillator, in three forms; and how often that is doubted.
+/// of an oscillator, in three forms; and how often that is doubted. With the `sign` -1 it is below
+/// zero elsewhere, and comes up to there.
 fn falls(
     method: usize,
     tolerance: f64,
-    (form, affine): (usize, bool),
+    (form, affine, sign): (usize, bool, f64),
     (miss, scale): (f64, f64),
     (phase, rate): (f64, f64),
 ) -> (usize, usize) {
@@ -28,7 +29,7 @@ fn falls(
             "swing",
             "swing",
             move |_t, x| {
-                scale
+                sign * scale
                     * match form {
                         0 => x[0] + 1.0 + miss,
                         1 => (1.0 + miss - x[0]) * (1.0 + miss + x[0]) * (2.0 - x[0]),
@@ -97,9 +98,27 @@ proptest! {
     ) {
         let [tolerance, scale, rate] = [-digits, scale, rate].map(|power| 10_f64.powf(power));
         let miss = 10_f64.powf(-miss) * if above { 1.0 } else { -1.0 };
-        let (jumps, doubts) = falls(method, tolerance, (form, affine), (miss, scale), (phase, rate));
+        let (jumps, doubts) = falls(method, tolerance, (form, affine, 1.0), (miss, scale), (phase, rate));
         let right = if above { 0 } else if form == 1 { 6 } else { 3 };
         prop_assert!(jumps == right || doubts > 0, "{jumps} falls, and no doubt");
+        prop_assert!(miss.abs() < 1e4 * tolerance || doubts == 0, "{doubts} doubts, {jumps} falls");
+    }
+
+    /// The same from below, for an edge that waits.
+    #[test]
+    fn what_comes_up_to_within_the_error_of_a_step_is_doubted(
+        method in 0..4_usize,
+        digits in 3.0..12.0_f64,
+        form in 0..3_usize,
+        (affine, above) in any::<(bool, bool)>(),
+        (miss, scale) in (2.0..14.0_f64, -3.0..3.0_f64),
+        (phase, rate) in (0.0..3.0_f64, -1.0..1.5_f64),
+    ) {
+        let [tolerance, scale, rate] = [-digits, scale, rate].map(|power| 10_f64.powf(power));
+        let miss = 10_f64.powf(-miss) * if above { -1.0 } else { 1.0 };
+        let (jumps, doubts) = falls(method, tolerance, (form, affine, -1.0), (miss, scale), (phase, rate));
+        let right = if !above { 0 } else if form == 1 { 6 } else { 3 };
+        prop_assert!(jumps == right || doubts > 0, "{jumps} falls instead of {right}, and no doubt");
         prop_assert!(miss.abs() < 1e4 * tolerance || doubts == 0, "{doubts} doubts, {jumps} falls");
     }
 }

@@ -99,7 +99,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 let grazing = if let Some(crossing) = fall {
                     self.grazes(edge, (step, range), crossing.root, derivatives)
                 } else {
-                    let by_powers = || along.as_ref()?.powers.turns().map(|turn| turn.map(|u| u * limit));
+                    let by_powers = || along.as_ref()?.powers.turns().map(|turn| turn.times(limit));
                     turn.or_else(by_powers).and_then(|turn| {
                         let leaves = first && (start == Start::Spent || self.memory.wall(edge).is_some());
                         self.missed(edge, (step, range), turn, leaves)

@@ -3,7 +3,7 @@
 
 use crate::automaton::Automaton;
 use crate::certainty::{ROUGHLY, ROUNDINGS, SMALL, SURELY};
-use crate::cross::{Doubt, Evidence};
+use crate::cross::{Doubt, Evidence, Turn};
 use crate::state::State;
 use crate::step::Stepper;
 
@@ -20,22 +20,32 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// Of a guard that does not fall on a step, and turns between two times: whether its least
     /// value is within the error of the step, and when. Of a guard that `leaves` zero at the start
     /// of the step a least value that reaches back to there is that zero.
+    ///
+    /// Of a guard below zero, as that of an edge that waits, the same from there: the value nearest
+    /// to zero. At the start of an arc it has come up from nowhere.
     #[cold]
     #[inline(never)]
     pub(super) fn missed(
         &mut self,
         edge: A::Edge,
         (step, range): (Step<'_, A::State>, Range),
-        turn: [f64; 2],
+        Turn { between: turn, below }: Turn,
         leaves: bool,
     ) -> Option<Evidence> {
         let ends = [self.on(edge, step, turn[0]), self.on(edge, step, turn[1])];
-        let (s, least) = self.least(edge, step, turn);
+        let side = if below { -1.0 } else { 1.0 };
+        let (ends, leaves) = (ends.map(|g| side * g), leaves || below && range.first);
+        let (s, least) = self.least(edge, step, turn, side);
         let rise = ends[0].max(ends[1]) - least;
         if !(least >= 0.0 && least <= ROUGHLY * rise) {
             return None;
         }
-        let room = self.error_of(edge, (step, range), s, least) - least;
+        // Where it is nearest at the start of the step it may have fallen from there all along.
+        let near = SMALL * step.scale;
+        if below && s <= near && -self.on(edge, step, s - near) <= least {
+            return None;
+        }
+        let room = self.error_of(edge, (step, range), s, side * least) - least;
         // As far to both sides as a parabola through the least value and an end stays within it.
         let half = |end: usize| (turn[end] - s).abs() * (room / (ends[end] - least)).sqrt().min(1.0);
         let (from, to) = (s - half(0), s + half(1));
@@ -62,8 +72,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         self.hovers(edge, (step, range), root)
     }
 
-    /// Of a guard that falls at `root`: whether it rises again from within the error of the step,
-    /// and when.
+    /// Of a guard that falls at `root`: whether it rises again from within the error of the step, or
+    /// has come up to zero by no more than that, and when.
     #[inline]
     fn dips(
         &mut self,
@@ -73,7 +83,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         derivatives: Option<[f64; 2]>,
     ) -> Option<Evidence> {
         let [slope, bend] = derivatives.unwrap_or_else(|| self.derivatives(edge, step, root));
-        let soon = bend > 0.0 && -slope < bend * (ROUGHLY * step.scale);
+        let soon = -slope < bend.abs() * (ROUGHLY * step.scale);
         soon.then(|| self.shallow(edge, (step, range), root, (-slope / bend, bend)))?
     }
 
@@ -95,9 +105,31 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         root: f64,
         (turn, bend): (f64, f64),
     ) -> Option<Evidence> {
-        let depth = 0.5 * bend * turn * turn;
+        let (depth, far) = (0.5 * bend.abs() * turn * turn, turn.abs());
+        if bend < 0.0 && !self.came_up(edge, (step, range), root, (far, depth)) {
+            return None;
+        }
         let close = depth <= self.error_of(edge, (step, range), root, 0.0);
-        close.then(|| Evidence::doubtful(Doubt::Grazing, (root - turn.abs()).max(0.0), root + 2.0 * turn.abs()))
+        let [before, after] = if bend < 0.0 { [3.0, 0.0] } else { [1.0, 2.0] };
+        close.then(|| Evidence::doubtful(Doubt::Grazing, (root - before * far).max(0.0), root + after * far))
+    }
+
+    /// Whether a guard that falls at `root`, and turned a time `turn` before at a height of `depth`,
+    /// came up from below zero: not from zero at the start of the arc. By a parabola it was three
+    /// times as far below three times as long before.
+    fn came_up(
+        &mut self,
+        edge: A::Edge,
+        (step, range): (Step<'_, A::State>, Range),
+        root: f64,
+        (turn, depth): (f64, f64),
+    ) -> bool {
+        if range.first && root - 2.0 * turn <= ROUGHLY * root {
+            return false;
+        }
+        let before = root - 3.0 * turn;
+        let before = if range.first { before.max(0.0) } else { before };
+        self.on(edge, step, before) < -depth
     }
 
     /// Whether a guard that falls at `root` has been no farther from zero on the step than what the
@@ -181,21 +213,23 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         ROUNDINGS * self.moved(edge, step.time(s), &step.at(s), g, allowed)
     }
 
-    /// Where a guard that turns up between two times is least, and its value there.
-    fn least(&mut self, edge: A::Edge, step: Step<'_, A::State>, [mut a, mut b]: [f64; 2]) -> (f64, f64) {
+    /// Where a guard times its `side` of zero, 1 or -1, which turns up between two times, is least,
+    /// and its value there.
+    fn least(&mut self, edge: A::Edge, step: Step<'_, A::State>, [mut a, mut b]: [f64; 2], side: f64) -> (f64, f64) {
         let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
         let inner = |a: f64, b: f64| [b - golden * (b - a), a + golden * (b - a)];
+        let mut on = |s: f64| side * self.on(edge, step, s);
         let mut at = inner(a, b);
-        let mut values = [self.on(edge, step, at[0]), self.on(edge, step, at[1])];
+        let mut values = [on(at[0]), on(at[1])];
         for _ in 0..SECTIONS {
             if values[0] <= values[1] {
                 b = at[1];
                 at = [inner(a, b)[0], at[0]];
-                values = [self.on(edge, step, at[0]), values[0]];
+                values = [on(at[0]), values[0]];
             } else {
                 a = at[0];
                 at = [at[1], inner(a, b)[1]];
-                values = [values[1], self.on(edge, step, at[1])];
+                values = [values[1], on(at[1])];
             }
         }
         (a.midpoint(b), values[0].min(values[1]))

@@ -75,8 +75,23 @@ pub struct Searched {
     pub fall: Option<Crossing>,
     /// What speaks for it.
     pub evidence: Evidence,
-    /// Between which times the guard turns up from its least value, where its samples show that.
-    pub(crate) turn: Option<[f64; 2]>,
+    /// Where the guard turns, nearest to zero, where its samples show that.
+    pub(crate) turn: Option<Turn>,
+}
+
+/// Where a guard turns: up from its least value, or, where it is below zero all along, down from its
+/// greatest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Turn {
+    pub(crate) between: [f64; 2],
+    pub(crate) below: bool,
+}
+
+impl Turn {
+    /// The same in another unit of time.
+    pub(crate) fn times(self, unit: f64) -> Self {
+        Self { between: self.between.map(|u| u * unit), ..self }
+    }
 }
 
 impl Searched {

@@ -3,6 +3,8 @@
 use crate::certainty::{MINUTE, ROUGHLY, SURELY, TINY};
 use crate::poly::MAX_DEGREE;
 
+use super::Turn;
+
 /// How often a stretch is halved on which the terms that rise do not outweigh those that fall.
 const DEEPEST: u32 = 4;
 /// Corrections after which the root is given up.
@@ -144,17 +146,29 @@ impl Powers {
     }
 
     /// Between which times it turns up, where it falls at the start and rises at the end; unless
-    /// even the sum of all terms that fall leaves it far from zero beside how much it changes.
+    /// even the sum of all terms that fall leaves it far from zero beside how much it changes. Of
+    /// one that starts below zero the same from there: where it turns down.
     #[inline]
-    pub(crate) fn turns(&self) -> Option<[f64; 2]> {
+    pub(crate) fn turns(&self) -> Option<Turn> {
         let a = self.coefficients();
+        if a[0] < 0.0 {
+            return self.turns_below();
+        }
         let falls = a.len() > 2 && a[1] < 0.0 && a[0] - self.rest.below() <= ROUGHLY * self.change();
-        (falls && self.rises_at_end()).then_some([0.0, 1.0])
+        (falls && self.slope_at_end() > 0.0).then_some(Turn { between: [0.0, 1.0], below: false })
+    }
+
+    #[cold]
+    fn turns_below(&self) -> Option<Turn> {
+        let a = self.coefficients();
+        let above = self.rest.sum + self.rest.below();
+        let rises = a.len() > 2 && a[1] > 0.0 && a[0] + above >= -ROUGHLY * self.change();
+        (rises && self.slope_at_end() < 0.0).then_some(Turn { between: [0.0, 1.0], below: true })
     }
 
     #[inline(never)]
-    fn rises_at_end(&self) -> bool {
-        self.coefficients().iter().zip(0..).skip(1).map(|(a, k)| f64::from(k) * a).sum::<f64>() > 0.0
+    fn slope_at_end(&self) -> f64 {
+        self.coefficients().iter().zip(0..).skip(1).map(|(a, k)| f64::from(k) * a).sum()
     }
 
     /// How far it bends: by its powers from the second on.

@@ -4,7 +4,7 @@ use crate::certainty::{FAR, NOTHING, TINY};
 
 use super::chebyshev::{SAMPLES, sample_times};
 use super::departure::Departure;
-use super::{Evidence, Undefined};
+use super::{Evidence, Turn, Undefined};
 
 /// A fall within this fraction of the interval from its start is at its start.
 pub(crate) const AT_START: f64 = NOTHING * TINY;
@@ -49,8 +49,8 @@ pub(super) struct Search<'a> {
     /// one.
     pub(super) flat: Option<f64>,
     pub(super) evidence: Evidence,
-    /// Between which times the samples of the whole interval turn up from their least.
-    pub(super) turn: Option<[f64; 2]>,
+    /// Where the samples of the whole interval turn.
+    pub(super) turn: Option<Turn>,
 }
 
 /// On which side of its zero the guard is.

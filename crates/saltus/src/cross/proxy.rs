@@ -5,7 +5,7 @@ use crate::poly::{Bernstein, SUMMED};
 
 use super::chebyshev::{CHECKS, SAMPLES, sample_times};
 use super::probe::Search;
-use super::{Undefined, chebyshev};
+use super::{Turn, Undefined, chebyshev};
 
 /// How many times as far as samples differ from the first the guard is above zero, for
 /// [`stay_clear`].
@@ -73,23 +73,28 @@ impl Samples {
 
     /// Between which times in 0..=b, the interval, the interpolant turns up from its least value,
     /// unless that is at an end or clear of zero: above a half of what the interpolant varies by.
-    pub(super) fn turn(&self, b: f64) -> Option<[f64; 2]> {
-        if self.series[0] > 2.0 * self.varies {
+    /// Of a guard that is below zero all along, where it turns down from its greatest one.
+    pub(super) fn turn(&self, b: f64) -> Option<Turn> {
+        let below = self.values.iter().all(|&value| value < 0.0);
+        let side = if below { -1.0 } else { 1.0 };
+        if side * self.series[0] > 2.0 * self.varies {
             return None;
         }
         // T'ₖ(1) = k², T'ₖ(-1) = (-1)ᵏ⁻¹ k².
         let slope = |odd: f64| {
             let c = &self.series;
-            odd * (c[1] + 9.0 * c[3] + 25.0 * c[5] + 49.0 * c[7]) + 4.0 * c[2] + 16.0 * c[4] + 36.0 * c[6] + 64.0 * c[8]
+            let even = 4.0 * c[2] + 16.0 * c[4] + 36.0 * c[6] + 64.0 * c[8];
+            side * (odd * (c[1] + 9.0 * c[3] + 25.0 * c[5] + 49.0 * c[7]) + even)
         };
-        let lowest = (1..9).fold(0, |low, k| if self.values[k] < self.values[low] { k } else { low });
+        let value = |k: usize| side * self.values[k];
+        let lowest = (1..9).fold(0, |low, k| if value(k) < value(low) { k } else { low });
         let turns = match lowest {
             0 => slope(-1.0) > 0.0,
             8 => slope(1.0) > 0.0,
             _ => true,
         };
         let time = |node: usize| 0.5 * b * (1.0 + chebyshev::NODES[node]);
-        turns.then(|| [time(lowest.max(1) - 1), time((lowest + 1).min(8))])
+        turns.then(|| Turn { between: [time(lowest.max(1) - 1), time((lowest + 1).min(8))], below })
     }
 
     /// Whether the guard is positive on the whole interval for the size of the series alone
