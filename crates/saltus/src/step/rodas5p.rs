@@ -299,7 +299,9 @@ fn time_derivative<S: State>(flow: &mut impl FnMut(f64, &S) -> S, t: f64, x: &S,
     // Within the step, yet far enough for the resolution of time not to matter.
     let resolution = resolution(t) / h;
     let reach = if resolution <= 1e-12 { 1e-4 * h } else { h * resolution.cbrt() };
-    let (near, far) = (t + reach, t + 2.0 * reach);
+    // Where the step is shorter than the spacing of time, the next times there are.
+    let near = (t + reach).max(t.next_up());
+    let far = (t + 2.0 * reach).max(near.next_up());
     let f1 = flow(near, x);
     if (0..x.len()).all(|i| f1.get(i) == slope.get(i)) {
         return x.with(|_| 0.0); // the flow does not depend on time
@@ -419,6 +421,23 @@ mod tests {
         let (end, _) = step(|_, x: &[f64; 3]| [-x[0].sqrt(), x[0].sqrt(), -x[2].sqrt()], 0.0, [1.0, 0.5, 0.0], 0.1);
         assert!((end[0] - 0.95_f64.powi(2)).abs() < 1e-7, "{end:?}");
         assert!((end[0] + end[1] - 1.5).abs() < 1e-12 && end[2] == 0.0, "{end:?}");
+    }
+
+    /// A step below the spacing of time, wherever between its powers of two, takes the flow for what
+    /// it is at its start.
+    #[test]
+    fn steps_shorter_than_the_spacing_of_time() {
+        for power in -30..300 {
+            for t in [1.0, 1.0_f64.next_up(), 1.3, 2.0_f64.next_down()].map(|t| t * 2.0_f64.powi(power)) {
+                for t in [t, -t] {
+                    for part in [1e-20, 1e-6, 0.1, 0.3, 0.6, 1.0, 2.0] {
+                        let h = part * resolution(t);
+                        let (end, _) = step(|s: f64, x: &f64| (s - t) / t - x + 1.0, t, 0.0, h);
+                        assert!((end - h).abs() <= 1e-9 * h + h * h, "{end:e} after {h:e} from {t:e}");
+                    }
+                }
+            }
+        }
     }
 
     #[test]
