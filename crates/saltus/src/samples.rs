@@ -156,9 +156,39 @@ impl<M: Copy, S: State> Sampler<M, S> {
         if self.rows.len() < MOST_ROWS { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     }
 
-    #[allow(clippy::cast_precision_loss)] // a count of ticks
     fn tick(&self, start: f64) -> f64 {
-        (self.next as f64).mul_add(self.dt, start)
+        self.tick_of(self.next, start)
+    }
+
+    #[allow(clippy::cast_precision_loss)] // a count of ticks
+    fn tick_of(&self, k: u64, start: f64) -> f64 {
+        (k as f64).mul_add(self.dt, start)
+    }
+
+    /// Goes on to the first tick after a time, if there is one: by steps that double, and then by
+    /// halves, for where ticks are closer than numbers of time there may be any number before.
+    fn skip(&mut self, start: f64, to: f64) -> bool {
+        let is_after = |k: u64| self.tick_of(k, start) > to;
+        if is_after(self.next) {
+            return true;
+        }
+        let (mut before, mut by) = (self.next, 1_u64);
+        let mut after = loop {
+            let Some(next) = before.checked_add(by) else { break u64::MAX };
+            if is_after(next) {
+                break next;
+            }
+            (before, by) = (next, by.saturating_mul(2));
+        };
+        if !is_after(after) {
+            return false;
+        }
+        while after - before > 1 {
+            let middle = before + (after - before) / 2;
+            *(if is_after(middle) { &mut after } else { &mut before }) = middle;
+        }
+        self.next = after;
+        true
     }
 
     fn begin(&mut self, t: f64, mode: M, state: S) -> f64 {
@@ -175,11 +205,12 @@ impl<M: Copy, S: State> Sampler<M, S> {
         let start = self.begin(from.seconds(), mode, piece.at(0.0));
         if self.dt > 0.0 && to.is_finite() {
             let instant = grace(to.abs().max(start.abs()));
-            while self.begun && self.tick(start) <= from.seconds() + instant {
-                self.next += 1;
+            let first = from.seconds() + instant;
+            self.begun = self.begun && !self.skip(start, first);
+            if self.begun && first < to - instant {
+                return ControlFlow::Break(()); // more ticks than can be counted, each a row
             }
-            self.begun = false;
-            while self.tick(start) < to - instant && self.full().is_continue() {
+            while !self.begun && self.tick(start) < to - instant && self.full().is_continue() {
                 let t = self.tick(start);
                 let state = piece.at(Time::new(t).since(from).clamp(0.0, piece.span()));
                 self.rows.push(Sample { t, j, mode, state });

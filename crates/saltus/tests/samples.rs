@@ -174,3 +174,45 @@ proptest! {
         prop_assert!(sampler.without_jumps().rows().eq(rows));
     }
 }
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+
+    /// Whatever the time from row to row, be it far below the spacing of times, a table is made or
+    /// refused at once: its rows are those ticks that are on no end by rounding.
+    #[test]
+    fn rows_of_any_interval(
+        (sign, start, length, interval) in (-1..=1_i32, -20.0..300.0_f64, -18.0..2.0_f64, -30.0..2.0_f64),
+    ) {
+        let from = f64::from(sign) * 10_f64.powf(start);
+        let to = from + 10_f64.powf(start + length);
+        let dt = 10_f64.powf(start + interval);
+        let model = Hybrid::new().mode("stand", |_t, _x: &f64| 0.0).exact("stand", |_t, x| [*x].into());
+        let run = Simulation::of(&model).run("stand", 1.0, from..to).unwrap();
+        let ulp = |t: f64| t.abs().next_up() - t.abs();
+        // Four spacings of the later end are an instant; of the start alone the table starts.
+        let instant = 4.0 * ulp(from.abs().max(to.abs()));
+        let inner = |k: f64| (k.mul_add(dt, from) > from + instant) && (k.mul_add(dt, from) < to - instant);
+        let about = (to - from) / dt;
+        match run.trajectory.sampled(dt) {
+            Err(flaw) => {
+                prop_assert_eq!(flaw, SamplingError::Rows { dt });
+                prop_assert!(about > 0.99e7, "{about} rows");
+            }
+            Ok(table) => {
+                let skipped = instant / dt;
+                prop_assert!(about - 2.0 * skipped < 1.01e7);
+                let times: Vec<f64> = table.rows().map(|row| row.t).collect();
+                prop_assert_eq!((times[0], times[times.len() - 1]), (from, to));
+                prop_assert!(times.windows(2).all(|pair| pair[0] <= pair[1]));
+                if about < 1e4 {
+                    let between = (1..=about as u64 + 2).map(|k| k as f64).filter(|&k| inner(k)).count();
+                    prop_assert_eq!(times.len(), between + 1 + usize::from(to > from));
+                } else {
+                    let many = (about - 2.0 * skipped).max(0.0);
+                    prop_assert!((times.len() as f64 - many).abs() <= 3.0 + ulp(to.abs().max(from.abs())) / dt, "{} and {many}", times.len());
+                }
+            }
+        }
+    }
+}
