@@ -10,7 +10,7 @@ use std::time::Duration;
 use proptest::prelude::*;
 use saltus::step::Stepper;
 use saltus::{
-    Automaton, Clock, Edges, ErrorKind, Filippov, Hybrid, Passage, Polynomial, Refusal, Side, Sides, Simulation,
+    Automaton, Clock, Edges, Entry, ErrorKind, Filippov, Hybrid, Passage, Polynomial, Refusal, Side, Sides, Simulation,
     Solution, Stats, Stop,
 };
 
@@ -381,5 +381,91 @@ fn no_run_jumps_more_often_than_it_may() {
     for most in 0..all {
         let end = Simulation::of(&ball).most_jumps(most).run("flight", [1.0, 0.0], 0.0..35.0).unwrap().end;
         assert_eq!((end.stop, end.jumps), (Stop::Jumps { most }, most));
+    }
+}
+
+/// x' = r x, by a formula.
+struct Growth(f64);
+
+impl Growth {
+    fn grown(&self, (): (), _t: f64, x: &f64, s: f64) -> f64 {
+        x * (self.0 * s).exp()
+    }
+}
+
+impl Automaton for Growth {
+    type Mode = ();
+    type State = f64;
+    type Edge = ();
+
+    fn flow(&self, (): (), _t: f64, x: &f64) -> f64 {
+        self.0 * x
+    }
+    fn solution(&self, (): (), _t: f64, _x: &f64) -> Solution<Self> {
+        Solution::Formula(Self::grown)
+    }
+    fn edges(&self, (): ()) -> Edges<'_, ()> {
+        Edges::none()
+    }
+    fn guard(&self, (): (), _t: f64, _x: &f64) -> f64 {
+        1.0
+    }
+    fn reset(&self, (): (), (): (), _t: f64, x: &f64) -> Result<((), f64), Refusal> {
+        Ok(((), *x))
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1000))]
+
+    /// An exact solution that is no number at the end of the span is an error; any other run ends
+    /// in a state that is one, an endless one in that at the last time.
+    #[test]
+    fn an_end_is_a_number_or_an_error(
+        powers in prop::collection::vec((-1.0..1.0_f64, -5.0..5.0_f64), 1..5),
+        late in prop::option::of(-3.0..300.0_f64),
+        floor in prop::option::of(0.0..300.0_f64),
+        affine: bool,
+    ) {
+        let mut c = [0.0; 4];
+        c.iter_mut().zip(&powers).for_each(|(c, (sign, size))| *c = sign.signum() * 10_f64.powf(*size));
+        let end = late.map_or(f64::INFINITY, |late| 10_f64.powf(late));
+        let exact = |s: f64| c.iter().rev().fold(0.0, |sum, c| sum * s + c);
+        let mut model = Hybrid::new()
+            .mode("run", move |t, _x: &f64| c.iter().zip(0..).skip(1).map(|(c, k)| f64::from(k) * c * t.powi(k - 1)).sum())
+            .exact("run", move |_t, x| [*x, c[1], c[2], c[3]].into());
+        if let Some(depth) = floor {
+            let depth = 10_f64.powf(depth);
+            model = model.terminal("run", move |_t, x| x + depth).entry(Entry::Wait);
+            if affine {
+                model = model.affine();
+            }
+        }
+        match Simulation::of(&model).run("run", c[0], 0.0..end) {
+            Ok(run) => {
+                let s = run.trajectory.end().seconds().min(1e300);
+                prop_assert!(run.end.state.is_finite(), "{:?}", run.end);
+                if !matches!(run.end.stop, Stop::Terminal { .. }) {
+                    prop_assert_eq!(run.end.state, exact(s));
+                }
+            }
+            Err(failed) => {
+                prop_assert_eq!(failed.error.kind(), ErrorKind::Flow);
+                prop_assert!(!exact(end.min(1e300)).is_finite());
+            }
+        }
+    }
+
+    /// The same of a formula.
+    #[test]
+    fn an_end_of_a_formula_is_a_number_or_an_error(rate in -1.0..1.0_f64, late in prop::option::of(-3.0..10.0_f64)) {
+        let end = late.map_or(f64::INFINITY, |late| 10_f64.powf(late));
+        match Simulation::of(&Growth(rate)).drive((), 1.0, 0.0..end, &mut ()) {
+            Ok(run) => prop_assert_eq!(run.state, (rate * end.min(1e300)).exp()),
+            Err(error) => {
+                prop_assert_eq!(error.kind(), ErrorKind::Flow);
+                prop_assert!((rate * end.min(1e300)).exp() == f64::INFINITY);
+            }
+        }
     }
 }

@@ -7,7 +7,7 @@ use crate::automaton::solution::Formula;
 use crate::certainty::{FEW, MINUTE, NOTHING, TINY};
 use crate::cross::chebyshev;
 use crate::ending::Stop;
-use crate::error::{Error, ErrorKind, Place};
+use crate::error::Error;
 use crate::observe::Observer;
 use crate::piece::{Piece, horner};
 use crate::state::State;
@@ -15,7 +15,7 @@ use crate::step::Stepper;
 use crate::time::{LAST, Span, Time};
 
 use super::crossing::Close;
-use super::exact::natural;
+use super::exact::{beyond_numbers, natural};
 use super::{Advance, ArcEnd};
 
 /// The longest first piece of an arc, in times in which its solution changes by its own size.
@@ -54,10 +54,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             None => Close { span: remaining, time: clock.end, state: at(remaining.min(LAST)) },
         };
         if !close.state.is_finite() {
-            return Err(Error::new(
-                ErrorKind::Flow,
-                Place::new(close.time.seconds(), mode, None::<A::Edge>, &close.state),
-            ));
+            let time = if first.is_some() { close.time } else { clock.in_numbers().end };
+            return Err(beyond_numbers(mode, time, &close.state));
         }
         let (told, reached) = self.interpolated(mode, x, now, close.span, at, observer);
         if reached < close.span.min(LAST) && told.is_continue() {

@@ -1,13 +1,14 @@
 //! An arc whose flow is solved exactly.
 
 use std::cell::LazyCell;
+use std::fmt::Debug;
 
 use crate::automaton::Automaton;
 use crate::automaton::solution::Polynomial;
 use crate::certainty::SMALL;
 use crate::cross::{Crossing, Doubt, Evidence, Searched, Start, Undefined, first_fall_on_arc, neighbours, settle};
 use crate::ending::Stop;
-use crate::error::Error;
+use crate::error::{Error, ErrorKind, Place};
 use crate::observe::Observer;
 use crate::piece::{Piece, horner};
 use crate::poly::{quadratic_fall, quadratic_touch};
@@ -42,16 +43,26 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         };
         let first = self.first_on_solution(mode, &c[0], clock, at, search, observer)?;
         if let Some((cut, stop)) = self.cut_before(first.as_ref()) {
+            let (time, state) = (now.after(cut), at(cut));
+            if !state.is_finite() {
+                return Err(beyond_numbers(mode, time, &state));
+            }
             let told = observer.piece(mode, &Piece::new(now, cut, 1.0, c));
             let stop = if told.is_break() { Stop::Observer } else { stop };
-            return Ok(ArcEnd::Stop { stop, time: now.after(cut), state: at(cut) });
+            return Ok(ArcEnd::Stop { stop, time, state });
         }
         let close = match &first {
             Some(first) => {
                 self.memory.slope = c.get(1).cloned();
                 self.close_on_solution(first, now, at, remaining)
             }
-            None => Close { span: remaining, time: clock.end, state: end_of(c, remaining) },
+            None => {
+                let (end, state) = (clock.in_numbers().end, at(remaining.min(LAST)));
+                if !state.is_finite() {
+                    return Err(beyond_numbers(mode, end, &state));
+                }
+                Close { span: remaining, time: clock.end, state }
+            }
         };
         let span = match &first {
             Some(first) if first.is_told() && observer.wants_pieces() => {
@@ -190,7 +201,9 @@ pub(super) fn natural<S: State>(c: &[S]) -> f64 {
     times().fold(slowest, f64::min).max(SMALL * slowest)
 }
 
-/// The state at the end of a piece that may last for ever.
-fn end_of<S: State>(c: &[S], span: f64) -> S {
-    if span.is_finite() || c.len() > 1 { horner(c, span) } else { c[0].clone() }
+/// An exact solution that is no number at a time to which the run was to go.
+#[cold]
+pub(super) fn beyond_numbers<M: Copy + Debug, S: State>(mode: M, time: Time, state: &S) -> Error {
+    let place = Place::new(time.seconds(), mode, None::<()>, state);
+    Error::new(ErrorKind::Flow, place).noting(Some("the exact solution leaves the range of numbers".to_owned()))
 }
