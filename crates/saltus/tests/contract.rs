@@ -480,6 +480,51 @@ proptest! {
     }
 }
 
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1000))]
+
+    /// A guard that is affine where the run is, and cut off or bent outside, is taken where it
+    /// falls or refused: it is asked out there as well.
+    #[test]
+    fn a_guard_that_is_affine_nearby_alone_is_refused_or_right(
+        (place, rate) in (-0.8..0.8_f64, 0.5..3.0_f64),
+        (far, bend) in (0.5..100.0_f64, -40.0..-3.0_f64),
+        kind in 0..5_usize,
+        method in 0..5_usize,
+        sums: bool,
+    ) {
+        let (far, bend) = (10_f64.powf(far), 10_f64.powf(bend));
+        let guard = move |_t: f64, x: &[f64; 2]| {
+            let sum = if sums { x[0] + 1e-3 * x[1] } else { x[0] };
+            match kind {
+                0 => sum.clamp(-far, far) - place,
+                1 => sum.min(far) - place,
+                2 => sum.max(-far) - place,
+                3 => sum - place + bend * x[0] * x[0],
+                _ => sum - place + bend * sum * sum.abs(),
+            }
+        };
+        let taken = |promised: bool| {
+            let mut model = Hybrid::new().mode("swing", move |_t, x: &[f64; 2]| [rate * x[1], -rate * x[0]]);
+            if method == 4 {
+                model = model.series("swing", move |_t, [x, v]| [v * rate, x * -rate]);
+            }
+            let edge = Edge::new(guard, |_t, x: &[f64; 2]| [x[0], -x[1]]).entry(Entry::Fire);
+            let model = model.edge_with("swing", "swing", if promised { edge.affine() } else { edge });
+            let run = Simulation::of(&model).stepper(methods()[method.min(3)]).most_jumps(20).run("swing", [1.0, 0.0], 0.0..20.0);
+            run.map(|run| run.trajectory.jumps().iter().map(saltus::Jump::t).collect::<Vec<_>>()).map_err(|failed| failed.error.kind())
+        };
+        match (taken(true), taken(false)) {
+            (Err(kind), _) => prop_assert_eq!(kind, ErrorKind::Promise),
+            (promised, Err(kind)) => prop_assert!(false, "{:?} and {:?}", promised, kind),
+            (Ok(promised), Ok(plain)) => {
+                prop_assert_eq!(promised.len(), plain.len());
+                prop_assert!(promised.iter().zip(&plain).all(|(a, b)| (a - b).abs() < 1e-5), "{:?} {:?}", promised, plain);
+            }
+        }
+    }
+}
+
 /// An exact solution that starts elsewhere, or not with the flow, is refused.
 #[test]
 fn an_exact_solution_of_another_flow_is_refused() {

@@ -10,6 +10,8 @@ use crate::state::State;
 use crate::step::Stepper;
 use crate::time::Time;
 
+use super::affine::less_constant;
+use super::enter::weight;
 use super::{Advance, ArcEnd};
 
 /// The first arcs of a run are all looked at: as many as modes follow each other in a cycle of most
@@ -97,11 +99,13 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if let Some((edge, flaw)) = self.reads_more(mode, times[0], x, &sum) {
             return Err(Error::new(ErrorKind::Promise, Place::new(times[0], mode, Some(edge), x)).noting(Some(flaw)));
         }
+        let reach = self.reach_of(mode, times, ends);
         for edge in self.automaton.edges(mode).iter() {
             if !self.automaton.about(edge).affine {
                 continue;
             }
-            if let Some(flaw) = self.broken(edge, times, ends, (&zero, &sum)) {
+            let flaw = self.broken(edge, times, ends, (&zero, &sum));
+            if let Some(flaw) = flaw.or_else(|| self.bends_far_out(edge, times[1], (&zero, &reach))) {
                 let place = Place::new(times[0], mode, Some(edge), ends[0]);
                 return Err(Error::new(ErrorKind::Promise, place).noting(Some(format!(
                     "affine and {flaw}: it must be a sum of coordinates times constants, and a constant"
@@ -126,6 +130,39 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let (here, there) = (self.guard(edge, t, x), self.guard(edge, t, &mixed));
         let flaw = format!("to read the coordinates {first}..{end} alone, and changes with another");
         (here.is_finite() && here != there).then_some((edge, flaw))
+    }
+
+    /// A state of what each coordinate is or changes by on an arc, no two alike.
+    fn reach_of(&self, mode: A::Mode, [began, time]: [f64; 2], [x, y]: [&A::State; 2]) -> A::State {
+        let flow = self.automaton.flow(mode, self.smooth.within(began), x);
+        let by = |i: usize| if i < flow.len() { ((time - began) * flow.get(i)).abs() } else { 0.0 };
+        let size =
+            |i: usize| [y.get(i).abs(), by(i)].into_iter().filter(|s| s.is_finite()).fold(x.get(i).abs(), f64::max);
+        x.with(|i| weight(i) * size(i))
+    }
+
+    /// Whether a guard a·x + b, of this arc's states, is another where the search asks it for what a
+    /// state adds to it: of the state a power of two larger, so that its constant costs no digits
+    /// (`less_constant`). Both ways from zero, for a guard may be cut off on one.
+    fn bends_far_out(
+        &mut self,
+        edge: A::Edge,
+        time: f64,
+        (zero, reach): (&A::State, &A::State),
+    ) -> Option<&'static str> {
+        let constant = self.guard(edge, time, zero);
+        for way in [1.0, -1.0] {
+            let x = reach.with(|i| way * reach.get(i));
+            let here = self.guard(edge, time, &x);
+            let far = less_constant(|x: &A::State| self.guard(edge, time, x), constant, &x);
+            let off = far - (here - constant);
+            if off.abs() > TINY * (constant.abs() + here.abs())
+                && off.abs() > SURELY * self.guard_rounding(edge, time, &x, here, &x)
+            {
+                return Some("bends far outside the states of the run, where it is asked as well");
+            }
+        }
+        None
     }
 
     /// Why the guard is not a·x + b, if it is not at two states, at the state `zero` and at the

@@ -209,10 +209,12 @@ impl About {
     /// time.
     ///
     /// The guard along a step is then a polynomial without error, and a crossing costs next to
-    /// nothing to exclude. A promise that does not hold is an error
-    /// ([`ErrorKind::Promise`](crate::ErrorKind::Promise)) where the ends of an arc show it, which
-    /// are looked at on the first eight arcs and ever more seldom later; where they do not show it,
-    /// crossings may be missed.
+    /// nothing to exclude. It holds of all states: so that the constant costs no digits, the guard
+    /// is asked far outside those of the run. One that is cut off out there (`clamp`, `min`), or
+    /// bends ever so little, is not affine. A promise that does not hold is an error
+    /// ([`ErrorKind::Promise`](crate::ErrorKind::Promise)) where the ends of an arc show it, or
+    /// states far outside, which are looked at on the first eight arcs and ever more seldom later;
+    /// where they do not show it, crossings may be missed.
     #[must_use]
     #[inline]
     pub const fn affine(self) -> Self {
