@@ -166,3 +166,35 @@ proptest! {
         prop_assert!(!run.trajectory.doubts().iter().any(|doubt| left(doubt.start)), "{:?}", run.trajectory.doubts());
     }
 }
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1000))]
+
+    /// A motion along a wall and off it, from rest, in any unit: it meets the wall again where it
+    /// does, or that is doubted, which it is where the absolute tolerance is large beside it.
+    #[test]
+    fn a_start_at_a_wall_below_the_absolute_tolerance_is_doubted(
+        method in 0..4_usize,
+        digits in 3.0..11.0_f64,
+        (size, time) in (-8.0..8.0_f64, -6.0..6.0_f64),
+        power in 2..4_i32,
+        affine: bool,
+    ) {
+        let tolerance = 10_f64.powf(-digits);
+        let (size, time) = (1e-3 * tolerance * 10_f64.powf(size), 10_f64.powf(time));
+        // y = s^m - s^(m + 1), with s = t / time.
+        let m = f64::from(power);
+        let pull = move |s: f64| m * (m - 1.0) * s.powi(power - 2) - (m + 1.0) * m * s.powi(power - 1);
+        let hill = Hybrid::new()
+            .mode("up", move |t, x: &[f64; 2]| [x[1] / time, size * pull(t / time) / time])
+            .terminal("up", |_t, x| x[0]);
+        let hill = if affine { hill.affine() } else { hill };
+        let simulation = Simulation::of(&hill).stepper(methods()[method]).tolerance(tolerance);
+        let run = simulation.run("up", [0.0, 0.0], 0.0..1.5 * time).unwrap();
+        let (landed, doubts) = (run.trajectory.end().seconds() / time, run.trajectory.doubts().len());
+        let right = run.end.jumps == 1 && (landed - 1.0).abs() < 0.01 + 100.0 * tolerance;
+        prop_assert!(right || doubts > 0, "size {size:e} time {time:e}: {} jumps, at {landed}", run.end.jumps);
+        let grazes = run.trajectory.doubts().iter().any(|doubt| doubt.evidence.doubt() == Some(Doubt::Grazing));
+        prop_assert!(!grazes || size < 1e4 * tolerance, "{:?}", run.trajectory.doubts());
+    }
+}

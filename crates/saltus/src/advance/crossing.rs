@@ -45,6 +45,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 && let Some(wall) = self.memory.wall(edge).filter(|wall| wall.stays || wall.falls)
             {
                 let wall = *wall;
+                if observer.is_some() && !self.memory.resolved {
+                    self.hold_down(edge, step, limit);
+                }
                 if let Some(crossing) = self.leaves(mode, wall, step, (limit, start)) {
                     if let Some(observer) = &mut observer
                         && let Some(evidence) = self.sank(edge, step, crossing.root)

@@ -4,8 +4,11 @@
 use crate::automaton::Automaton;
 use crate::certainty::{ROUGHLY, ROUNDINGS, SMALL, SURELY};
 use crate::cross::{Doubt, Evidence, Turn};
+use crate::inspection::Inspection;
+use crate::observe::Observer;
 use crate::state::State;
 use crate::step::Stepper;
+use crate::time::Time;
 
 use super::Advance;
 use super::crossing::Range;
@@ -149,6 +152,39 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let off = self.moved(edge, step.time(middle), &x, half, |_| ROUNDINGS * absolute);
         self.memory.resolved = start.abs().max(half.abs()) > SURELY * off;
         (!self.memory.resolved).then_some(Evidence::doubtful(Doubt::Grazing, 0.0, root))
+    }
+
+    /// Notes a guard that stays at its wall on a step up to `limit` where what it reads moves, and is
+    /// of a size there that the absolute tolerance does not resolve: whether the flow carries it up
+    /// or down then says nothing. Later steps of the arc may show it.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn hold_down(&mut self, edge: A::Edge, step: Step<'_, A::State>, limit: f64) {
+        let (start, later) = (step.at(0.0), [0.5 * limit, limit].map(|s| step.at(s)));
+        let (absolute, t, g) = (self.options.tolerance.absolute, step.time(0.0), self.on(edge, step, 0.0));
+        let most = |i: usize, of: &dyn Fn(f64) -> f64| later.iter().map(|x| of(x.get(i)).abs()).fold(0.0, f64::max);
+        let way = self.moved(edge, t, &start, g, |i| most(i, &|x| x - start.get(i)));
+        if way > 0.0 {
+            let size = self.moved(edge, t, &start, g, |i| most(i, &|x| x).max(start.get(i).abs()));
+            let off = self.moved(edge, t, &start, g, |_| ROUNDINGS * absolute);
+            self.memory.resolved = size > SURELY * off;
+            self.held_down = (!self.memory.resolved).then_some(edge);
+        }
+    }
+
+    /// After an arc from `began` to `time`: doubts the edge that was held down on it, if one was.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn doubt_held_down(
+        &mut self,
+        mode: A::Mode,
+        edge: A::Edge,
+        (began, time): (Time, Time),
+        observer: &mut impl Observer<A>,
+    ) {
+        let span = time.since(began);
+        let evidence = Evidence::doubtful(Doubt::Grazing, 0.0, span);
+        observer.inspection(&Inspection { mode, edge, start: began, span, evidence });
     }
 
     /// Whether the error of the step decides that a guard falls at `root`: where the jump before

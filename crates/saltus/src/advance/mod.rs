@@ -80,6 +80,9 @@ pub(crate) struct Advance<'a, A: Automaton, M> {
     pub(crate) memory: Memory<A::Edge, A::State>,
     tape: Tape,
     held: Held<A>,
+    /// An edge that has stayed at its wall on this arc, where all that its guard reads is below what
+    /// the absolute tolerance resolves.
+    held_down: Option<A::Edge>,
     /// The stretch of time on which the flow of the arc's mode is smooth.
     smooth: Smooth,
     /// The pattern of its Jacobian, where that is given.
@@ -90,7 +93,7 @@ impl<'a, A: Automaton, M> Advance<'a, A, M> {
     #[inline(always)]
     pub(crate) fn new(automaton: &'a A, stepper: M, options: Options, memory: Memory<A::Edge, A::State>) -> Self {
         let (tape, held, smooth) = (Tape::new(), Held::default(), Smooth::ALWAYS);
-        Self { automaton, stepper, options, memory, tape, held, smooth, sparsity: None }
+        Self { automaton, stepper, options, memory, tape, held, held_down: None, smooth, sparsity: None }
     }
 }
 
@@ -259,6 +262,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             _ => self.stepped(mode, x.clone(), clock.in_numbers(), true, observer),
         };
         let end = end?;
+        if let Some(edge) = self.held_down.take() {
+            let (ArcEnd::Crossing { time, .. } | ArcEnd::Stop { time, .. }) = end;
+            self.doubt_held_down(mode, edge, (now, time), observer);
+        }
         self.stayed_inside(mode, x, now, &end, observer)?;
         self.promises(mode, x, now, &end)?;
         match end {

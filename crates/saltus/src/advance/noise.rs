@@ -342,7 +342,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             |memory| &mut memory.walls,
             |this, wall| {
                 let edge = wall.edge;
-                if !wall.stays || this.carried(mode, edge, t, x, h) != Carried::Along {
+                if !wall.stays {
+                    return false;
+                }
+                let carried = this.carried(mode, edge, t, x, h);
+                if carried != Carried::Along {
+                    this.held_down = this.held_down.filter(|_| carried == Carried::Down);
                     return false;
                 }
                 this.memory.stats.guards += 1;
