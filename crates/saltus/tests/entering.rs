@@ -118,3 +118,37 @@ proptest! {
         }
     }
 }
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1000))]
+
+    /// Of two edges due at once, the first of which changes nothing that the guards read, both are
+    /// taken, in the order listed: the second leads away before the first is found to fall on.
+    #[test]
+    fn an_edge_due_at_once_is_taken_before_another_is_refused(
+        (speed, wall) in (-3.0..3.0_f64, -3.0..3.0_f64),
+        steep in prop::array::uniform2(-3.0..3.0_f64),
+        entry in prop::sample::select(vec![Entry::Refuse, Entry::Wait, Entry::Fire]),
+        (of_time, solved) in any::<(bool, bool)>(),
+        start in prop::sample::select(vec![0.0, 0.25, -4.7]),
+        method in 0..4_usize,
+    ) {
+        let [speed, wall] = [speed, wall].map(|power| 10_f64.powf(power));
+        let steep = steep.map(|power| 10_f64.powf(power));
+        let mut model = Hybrid::new()
+            .mode("run", move |_t, _x: &[f64; 2]| [speed, 1.0])
+            .mode("away", |_t, _x| [0.0; 2]);
+        if solved {
+            model = model.exact("run", move |_t, x| Polynomial::from([*x, [speed, 1.0]]));
+        }
+        let left = move |t: f64, x: &[f64; 2]| if of_time { start + wall / speed - t } else { wall - x[0] };
+        let model = model
+            .edge("run", "run", move |t, x| steep[0] * left(t, x), |_t, x| [x[0], 0.0])
+            .entry(entry)
+            .edge("run", "away", move |t, x| steep[1] * left(t, x), |_t, x| *x);
+        let simulation = Simulation::of(&model).stepper(methods()[method]).most_jumps(20);
+        let run = simulation.run("run", [0.0; 2], start..start + 2.0 * wall / speed).unwrap();
+        let places: Vec<_> = run.trajectory.jumps().iter().filter_map(|jump| Some(jump.edge()?.place)).collect();
+        prop_assert_eq!(places, [0, 1]);
+    }
+}

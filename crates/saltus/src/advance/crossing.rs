@@ -36,6 +36,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let mut found: Option<OnStep<A>> = None;
         let mut powers = Powers::new();
         let mut undefined: Option<(f64, A::Edge)> = None;
+        let mut spent = None;
         let (zero, mut shared) = (step.c[0].with(|_| 0.0), Shared::new());
         let Step { now, c, scale } = step;
         let Range { limit, first, roughly } = range;
@@ -96,7 +97,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let Searched { fall, mut evidence, turn } = searched;
             let derivatives = by_powers.derivatives(limit);
             if start == Start::Spent && fall.is_none() {
-                self.stays_in(mode, edge, (now, &c[0]), (now.after(limit), &step.at(limit)))?;
+                spent = spent.or(Some(edge));
             }
             if let Some(observer) = &mut observer {
                 let grazing = if let Some(crossing) = fall {
@@ -119,7 +120,13 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let first = found.as_ref().map_or(f64::INFINITY, |found| found.crossing.inside);
         match undefined.filter(|&(s, _)| s < first) {
             Some((s, edge)) => Err(self.undefined(mode, edge, now, s, &step.at(s))),
-            None => Ok(found),
+            None => {
+                // Where the arc ends before, it is looked at there: another edge may be due at once.
+                if let (Some(edge), None) = (spent, &found) {
+                    self.stays_in(mode, edge, (now, &c[0]), (now.after(limit), &step.at(limit)))?;
+                }
+                Ok(found)
+            }
         }
     }
 
