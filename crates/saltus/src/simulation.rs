@@ -278,8 +278,8 @@ impl<'a, A: Automaton, M: Stepper> Simulation<'a, A, M> {
     /// Runs from `state` in `mode` over the span of time and records the whole trajectory.
     ///
     /// The end of the span may be infinite: a run in which nothing happens any more ends with
-    /// [`Stop::Forever`], its state that at 10³⁰⁰ s, the last time to which guards are searched. One
-    /// whose state there is no number, as of a ball that falls for ever, fails.
+    /// [`Stop::Forever`], its state that at 10³⁰⁰ s, the last time to which guards are searched.
+    /// One whose state there is no number, as of a ball that falls for ever, fails.
     ///
     /// # Errors
     /// [`Failed`], which holds the [`Error`] and the run up to it; `?` turns it into the [`Error`]

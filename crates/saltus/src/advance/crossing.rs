@@ -121,7 +121,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         match undefined.filter(|&(s, _)| s < first) {
             Some((s, edge)) => Err(self.undefined(mode, edge, now, s, &step.at(s))),
             None => {
-                // Where the arc ends before, it is looked at there: another edge may be due at once.
+                // Where the arc ends before, it is looked at there: another edge may be due at
+                // once.
                 if let (Some(edge), None) = (spent, &found) {
                     self.stays_in(mode, edge, (now, &c[0]), (now.after(limit), &step.at(limit)))?;
                 }

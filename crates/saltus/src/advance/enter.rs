@@ -224,8 +224,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         left
     }
 
-    /// Of the edges listed before one that is due at once, or refused, the first whose guard is zero
-    /// but for rounding and falls: in the order listed it is taken before.
+    /// Of the edges listed before one that is due at once, or refused, the first whose guard is
+    /// zero but for rounding and falls: in the order listed it is taken before.
     #[cold]
     fn first_of(&mut self, mode: A::Mode, t: f64, x: &A::State) -> Option<A::Edge> {
         for k in 0..self.memory.walls.len() {

@@ -24,8 +24,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// value is within the error of the step, and when. Of a guard that `leaves` zero at the start
     /// of the step a least value that reaches back to there is that zero.
     ///
-    /// Of a guard below zero, as that of an edge that waits, the same from there: the value nearest
-    /// to zero. At the start of an arc it has come up from nowhere.
+    /// Of a guard below zero, as that of an edge that waits, the same from there: the value
+    /// nearest to zero. At the start of an arc it has come up from nowhere.
     #[cold]
     #[inline(never)]
     pub(super) fn missed(
@@ -75,8 +75,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         self.hovers(edge, (step, range), root)
     }
 
-    /// Of a guard that falls at `root`: whether it rises again from within the error of the step, or
-    /// has come up to zero by no more than that, and when.
+    /// Of a guard that falls at `root`: whether it rises again from within the error of the step,
+    /// or has come up to zero by no more than that, and when.
     #[inline]
     fn dips(
         &mut self,
@@ -117,9 +117,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         close.then(|| Evidence::doubtful(Doubt::Grazing, (root - before * far).max(0.0), root + after * far))
     }
 
-    /// Whether a guard that falls at `root`, and turned a time `turn` before at a height of `depth`,
-    /// came up from below zero: not from zero at the start of the arc. By a parabola it was three
-    /// times as far below three times as long before.
+    /// Whether a guard that falls at `root`, and turned a time `turn` before at a height of
+    /// `depth`, came up from below zero: not from zero at the start of the arc. By a parabola it
+    /// was three times as far below three times as long before.
     fn came_up(
         &mut self,
         edge: A::Edge,
@@ -154,9 +154,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         (!self.memory.resolved).then_some(Evidence::doubtful(Doubt::Grazing, 0.0, root))
     }
 
-    /// Notes a guard that stays at its wall on a step up to `limit` where what it reads moves, and is
-    /// of a size there that the absolute tolerance does not resolve: whether the flow carries it up
-    /// or down then says nothing. Later steps of the arc may show it.
+    /// Notes a guard that stays at its wall on a step up to `limit` where what it reads moves, and
+    /// is of a size there that the absolute tolerance does not resolve: whether the flow carries
+    /// it up or down then says nothing. Later steps of the arc may show it.
     #[cold]
     #[inline(never)]
     pub(super) fn hold_down(&mut self, edge: A::Edge, step: Step<'_, A::State>, limit: f64) {
@@ -249,8 +249,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         ROUNDINGS * self.moved(edge, step.time(s), &step.at(s), g, allowed)
     }
 
-    /// Where a guard times its `side` of zero, 1 or -1, which turns up between two times, is least,
-    /// and its value there.
+    /// Where a guard times its `side` of zero, 1 or -1, which turns up between two times, is
+    /// least, and its value there.
     fn least(&mut self, edge: A::Edge, step: Step<'_, A::State>, [mut a, mut b]: [f64; 2], side: f64) -> (f64, f64) {
         let golden = 0.5 * (5.0_f64.sqrt() - 1.0);
         let inner = |a: f64, b: f64| [b - golden * (b - a), a + golden * (b - a)];

@@ -80,8 +80,8 @@ pub(crate) struct Advance<'a, A: Automaton, M> {
     pub(crate) memory: Memory<A::Edge, A::State>,
     tape: Tape,
     held: Held<A>,
-    /// An edge that has stayed at its wall on this arc, where all that its guard reads is below what
-    /// the absolute tolerance resolves.
+    /// An edge that has stayed at its wall on this arc, where all that its guard reads is below
+    /// what the absolute tolerance resolves.
     held_down: Option<A::Edge>,
     /// The stretch of time on which the flow of the arc's mode is smooth.
     smooth: Smooth,

@@ -141,9 +141,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         x.with(|i| weight(i) * size(i))
     }
 
-    /// Whether a guard a·x + b, of this arc's states, is another where the search asks it for what a
-    /// state adds to it: of the state a power of two larger, so that its constant costs no digits
-    /// (`less_constant`). Both ways from zero, for a guard may be cut off on one.
+    /// Whether a guard a·x + b, of this arc's states, is another where the search asks it for what
+    /// a state adds to it: of the state a power of two larger, so that its constant costs no
+    /// digits (`less_constant`). Both ways from zero, for a guard may be cut off on one.
     fn bends_far_out(
         &mut self,
         edge: A::Edge,

@@ -79,8 +79,8 @@ pub struct Searched {
     pub(crate) turn: Option<Turn>,
 }
 
-/// Where a guard turns: up from its least value, or, where it is below zero all along, down from its
-/// greatest.
+/// Where a guard turns: up from its least value, or, where it is below zero all along, down from
+/// its greatest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Turn {
     pub(crate) between: [f64; 2],

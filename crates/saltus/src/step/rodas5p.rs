@@ -423,8 +423,8 @@ mod tests {
         assert!((end[0] + end[1] - 1.5).abs() < 1e-12 && end[2] == 0.0, "{end:?}");
     }
 
-    /// A step below the spacing of time, wherever between its powers of two, takes the flow for what
-    /// it is at its start.
+    /// A step below the spacing of time, wherever between its powers of two, takes the flow for
+    /// what it is at its start.
     #[test]
     fn steps_shorter_than_the_spacing_of_time() {
         for power in -30..300 {
