@@ -227,6 +227,42 @@ fn infinitely_many_impacts_have_their_limit() {
 }
 
 proptest! {
+    /// A flight that begins at rest on its floor, y = L (s² - s³) with s = t/T, lands at s = 1:
+    /// what time is measured in does not matter.
+    #[test]
+    fn a_rise_from_rest_lands_in_any_unit(
+        exponent in -9.0..7.0_f64, size in -3.0..3.0_f64, digits in 3.0..12.0_f64, affine in any::<bool>(),
+    ) {
+        let (unit, height) = (10.0_f64.powf(exponent), 10.0_f64.powf(size));
+        let by = height / (unit * unit);
+        let flight = Hybrid::new()
+            .mode("fly", move |t, x: &[f64; 2]| [x[1], by * (2.0 - 6.0 * (t / unit))])
+            .series("fly", move |t, [_, v]| [v, by * (2.0 - 6.0 * (t / unit))])
+            .mode("landed", |_t, _x| [0.0, 0.0])
+            .switch("fly", "landed", |_t, x| x[0]);
+        let flight = if affine { flight.affine() } else { flight };
+        let tolerance = 10.0_f64.powf(-digits);
+        let run = Simulation::of(&flight).tolerance(tolerance).run("fly", [0.0, 0.0], 0.0..2.0 * unit).unwrap();
+        let times: Vec<_> = run.trajectory.jumps().iter().map(|jump| jump.t() / unit).collect();
+        prop_assert!(times.len() == 1 && (times[0] - 1.0).abs() < 10.0 * tolerance, "{times:?}");
+    }
+
+    /// A coordinate that stands still, and that nothing reads, changes no bounce.
+    #[test]
+    fn a_coordinate_that_stands_changes_nothing(e in 0.2..0.9_f64, size in -9.0..9.0_f64, affine in any::<bool>()) {
+        let ball = Hybrid::new()
+            .mode("fly", |_t, x: &[f64; 3]| [x[1], -9.8, 0.0])
+            .series("fly", |_t, [_, v, stands]| [v, stands * 0.0 - 9.8, stands * 0.0])
+            .edge("fly", "fly", |_t, x| x[0], move |_t, x| [x[0], -e * x[1], x[2]]);
+        let ball = if affine { ball.affine() } else { ball };
+        let ball = ball.mode("rest", |_t, _x| [0.0; 3]).beyond("fly", "rest", |_t, x| [0.0, 0.0, x[2]]);
+        let stands = 10.0_f64.powf(size);
+        let run = Simulation::of(&ball).run("fly", [4.9, 0.0, stands], 0.0..100.0).unwrap();
+        let rest = 1.0 + 2.0 * e / (1.0 - e);
+        let last = run.trajectory.jumps().last().unwrap();
+        prop_assert!(run.end.mode == "rest" && (last.t() - rest).abs() < 1e-9 * rest, "{} {}", last.t(), rest);
+    }
+
     /// Damped oscillators, their guards and their trajectories by two methods that share nothing
     /// but the search.
     #[test]

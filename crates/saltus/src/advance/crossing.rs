@@ -38,14 +38,14 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let mut undefined: Option<(f64, A::Edge)> = None;
         let mut spent = None;
         let (zero, mut shared) = (step.c[0].with(|_| 0.0), Shared::new());
-        let Step { now, c, scale } = step;
+        let Step { now, c, scale, .. } = step;
         let Range { limit, first, roughly } = range;
         for edge in self.automaton.edges(mode).iter() {
             let (start, level) = (self.start(edge, first), self.level(edge));
             if !self.memory.walls.is_empty()
-                && let Some(wall) = self.memory.wall(edge).filter(|wall| wall.stays || wall.falls)
+                && let Some(&wall) = self.memory.wall(edge).filter(|wall| wall.stays || wall.falls)
+                && !(wall.stays && self.rises_from(wall, step, limit, &mut shared))
             {
-                let wall = *wall;
                 if observer.is_some() && !self.memory.resolved {
                     self.hold_down(edge, step, limit);
                 }
@@ -137,7 +137,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     fn falls_by_powers(
         &mut self,
         edge: A::Edge,
-        Step { now, c, scale }: Step<'_, A::State>,
+        Step { now, c, scale, .. }: Step<'_, A::State>,
         near: &Option<Near<A::State>>,
         s: f64,
         level: f64,
@@ -163,7 +163,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     ) -> Result<Searched, Undefined> {
         // How far it bends tells what it is rough by near a zero at the start alone.
         let at_zero = start == Start::Spent || values[0] == 0.0;
-        let bend = if at_zero { self.bend(edge, step.now, step.c) } else { 0.0 };
+        let bend = if at_zero { self.bend(edge, step, limit) } else { 0.0 };
         let tick = resolution(step.now.seconds().abs() + limit);
         let search = |above: &mut dyn FnMut(f64) -> f64| first_fall_on_step(above, values, limit, start, bend, tick);
         self.searched(edge, step, level, search)
@@ -192,7 +192,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     fn searched(
         &mut self,
         edge: A::Edge,
-        Step { now, c, scale }: Step<'_, A::State>,
+        Step { now, c, scale, .. }: Step<'_, A::State>,
         level: f64,
         search: impl FnOnce(&mut dyn FnMut(f64) -> f64) -> Result<Searched, Undefined>,
     ) -> Result<Searched, Undefined> {

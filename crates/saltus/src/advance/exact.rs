@@ -141,7 +141,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let tick = resolution(now.seconds().abs() + to);
             let mut above = |s| guard(from + s) - level;
             let value = above(0.0);
-            let searched = first_fall_on_arc(&mut above, value, to - from, start, tick)
+            let searched = first_fall_on_arc(&mut above, value, (from, to - from), start, tick)
                 .map_err(|Undefined(s)| Undefined(from + s))?;
             let searched = unlevelled(searched, level, &mut guard);
             evidence = evidence.and(searched.evidence.later(from));

@@ -44,7 +44,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             return None;
         }
         // Where it is nearest at the start of the step it may have fallen from there all along.
-        let near = SMALL * step.scale;
+        let near = SMALL * step.size;
         if below && s <= near && -self.on(edge, step, s - near) <= least {
             return None;
         }
@@ -66,7 +66,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         derivatives: Option<[f64; 2]>,
     ) -> Option<Evidence> {
         // Before a fall at the start of the step nothing shows how the guard came there.
-        if root >= SMALL * step.scale
+        if root >= SMALL * step.size
             && let Some(evidence) =
                 self.dips(edge, (step, range), root, derivatives).or_else(|| self.unresolved(edge, step, root))
         {
@@ -86,14 +86,14 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         derivatives: Option<[f64; 2]>,
     ) -> Option<Evidence> {
         let [slope, bend] = derivatives.unwrap_or_else(|| self.derivatives(edge, step, root));
-        let soon = -slope < bend.abs() * (ROUGHLY * step.scale);
+        let soon = -slope < bend.abs() * (ROUGHLY * step.size);
         soon.then(|| self.shallow(edge, (step, range), root, (-slope / bend, bend)))?
     }
 
     /// The first two derivatives of a guard at its `root`, by differences.
     #[inline(never)]
     fn derivatives(&mut self, edge: A::Edge, step: Step<'_, A::State>, root: f64) -> [f64; 2] {
-        let by = SMALL * step.scale;
+        let by = SMALL * step.size;
         // Zero between them.
         let (before, after) = (self.on(edge, step, root - by), self.on(edge, step, root + by));
         [(after - before) / (2.0 * by), (before + after) / (by * by)]

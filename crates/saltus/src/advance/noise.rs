@@ -3,14 +3,14 @@
 
 use crate::automaton::Automaton;
 use crate::certainty::{FAR, FEW, ROUGHLY, ROUNDINGS, SMALL, TINY};
-use crate::cross::{AT_START, Crossing, Start};
+use crate::cross::{self, AT_START, Crossing, Start, sample_times};
 use crate::state::State;
 use crate::step::Stepper;
 use crate::time::{Time, resolution};
 
 use super::affine::{is_rounding, less_constant};
 use super::enter::weight;
-use super::shared::Step;
+use super::shared::{Shared, Step};
 use super::{Advance, Spent, Wall};
 
 /// Of how many values a guard's scatter is taken: among so few, a typical one and a large one.
@@ -77,13 +77,17 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// How far rounding may move the guard, and what the tolerance allows in each coordinate for
     /// each step of this arc: Σ |∂g/∂xᵢ| so many times that. An exact arc has none.
     pub(super) fn within_tolerance(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
+        self.within_steps(edge, t, x, g, self.memory.stats.steps - self.memory.steps_before)
+    }
+
+    /// The same after so many steps.
+    fn within_steps(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64, steps: u64) -> f64 {
         let rounding = FAR * self.still(edge, t, x, g);
-        let steps = (self.memory.stats.steps - self.memory.steps_before) as f64;
-        if steps == 0.0 {
+        if steps == 0 {
             return rounding;
         }
         let tolerance = self.options.tolerance;
-        rounding + FEW * steps * self.moved(edge, t, x, g, |i| tolerance.allowed(x.get(i), x.get(i)))
+        rounding + FEW * steps as f64 * self.moved(edge, t, x, g, |i| tolerance.allowed(x.get(i), x.get(i)))
     }
 
     /// How far the guard, `g` at `x`, moves with each coordinate i that is moved by `by(i)`, all
@@ -115,12 +119,16 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if change.is_finite() { change } else { 0.0 }
     }
 
-    /// How far the guard bends along a polynomial: by its powers from the second on, as the guard
-    /// moves with the state at the start.
+    /// How far the guard bends along a dense output up to `limit`: by its powers from the second
+    /// on, as the guard moves with the state at the start.
     #[cold]
-    pub(super) fn bend(&mut self, edge: A::Edge, now: Time, c: &[A::State]) -> f64 {
+    pub(super) fn bend(&mut self, edge: A::Edge, Step { now, c, scale, .. }: Step<'_, A::State>, limit: f64) -> f64 {
         self.memory.stats.guards += 2;
-        let bent = c[0].with(|i| c.iter().skip(2).fold(c[0].get(i), |sum, c| sum + TINY * c.get(i).abs()));
+        let part = limit / scale;
+        let bent = c[0].with(|i| {
+            let higher = c.iter().skip(2).rev().fold(0.0, |sum, c| part * sum + c.get(i).abs());
+            c[0].get(i) + TINY * part * part * higher
+        });
         let guard = |x: &A::State| self.guard(edge, now.seconds(), x);
         let bend = (guard(&bent) - guard(&c[0])).abs() / TINY;
         if bend.is_finite() { bend } else { 0.0 }
@@ -134,7 +142,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             && self.memory.wall(edge).is_none()
             && self.has(mode, edge)
         {
-            let (t, x, by) = (step.now.seconds(), &step.c[0], SMALL * step.scale);
+            let (t, x, by) = (step.now.seconds(), &step.c[0], SMALL * step.size);
             self.memory.stats.guards += 2;
             let guard = |s: f64| self.guard(edge, t + s, &x.with(|i| x.get(i) + s * slope.get(i)));
             // A guard that moves by more than a million times what rounding leaves of it has left
@@ -156,7 +164,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         mode: A::Mode,
         x: &A::State,
         slope: &A::State,
-        Step { now, c, scale: h }: Step<'_, A::State>,
+        Step { now, c, size: h, .. }: Step<'_, A::State>,
     ) -> bool {
         let Some(c1) = c.get(1) else { return false };
         if (0..slope.len()).all(|i| c1.get(i) == h * slope.get(i)) {
@@ -206,20 +214,20 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
 
     #[cold]
     fn sort_walls(&mut self, mode: A::Mode, step: Step<'_, A::State>) {
-        let Step { now, c, scale } = step;
+        let Step { now, c, size, .. } = step;
         let (t, x) = (now.seconds(), &c[0]);
         self.sift(
             |memory| &mut memory.walls,
             |this, wall| {
                 let edge = wall.edge;
-                let by = SMALL * scale;
+                let by = SMALL * size;
                 let rate = this.guard_rate(mode, edge, t, x, by);
                 let rounding = this.rate_rounding(edge, t, x, by);
                 // A guard that falls or rises as a power of time does so within a small part of
                 // the step.
-                let s = ROUGHLY * scale;
+                let s = ROUGHLY * size;
                 wall.stays = rate.abs() <= rounding
-                    && this.carried(mode, edge, step.time(s), &step.at(s), scale) == Carried::Along;
+                    && this.carried(mode, edge, step.time(s), &step.at(s), size) == Carried::Along;
                 let spent = this.memory.spent_as(edge).is_some();
                 wall.falls = !spent && rate < -rounding && this.falls_at_once(mode, edge, (t, x), by, (rate, rounding));
                 wall.stays || !spent
@@ -302,6 +310,28 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         lasts(ahead) && lasts([rate, self.guard_rate(mode, edge, t, x, 0.5 * by)])
     }
 
+    /// Whether the guard of an edge that stays rises from its wall on a step up to its `limit`,
+    /// beyond what rounding and the tolerance leave open: it is then armed like any other.
+    #[cold]
+    pub(super) fn rises_from<'c>(
+        &mut self,
+        Wall { edge, level, .. }: Wall<A::Edge>,
+        step: Step<'c, A::State>,
+        limit: f64,
+        shared: &mut Shared<'c, A::State>,
+    ) -> bool {
+        self.memory.stats.guards += cross::SAMPLES as u64;
+        let automaton = self.automaton;
+        let values = shared.values(step, limit, self.smooth, |t, x| automaton.guard(edge, t, x) - level);
+        let times = sample_times(0.0, limit);
+        let highest = times.into_iter().zip(values).max_by(|a, b| a.1.total_cmp(&b.1));
+        highest.is_some_and(|(s, above)| {
+            let x = step.at(s);
+            let steps = self.memory.stats.steps - self.memory.steps_before + 1;
+            above > self.within_steps(edge, step.time(s), &x, above + level, steps)
+        })
+    }
+
     /// Where on a step an edge leaves its wall, on which it stays or from which it falls: where the
     /// flow begins to carry its guard down, if it does so at the end of the search, after `limit`.
     /// From a spent root at the start of an arc it goes on falling.
@@ -317,7 +347,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if falls {
             return Some(at_start);
         }
-        let mut carried = |s: f64| self.carried(mode, edge, step.time(s), &step.at(s), step.scale);
+        let mut carried = |s: f64| self.carried(mode, edge, step.time(s), &step.at(s), step.size);
         if carried(limit) != Carried::Down {
             return None;
         }

@@ -87,7 +87,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let c = &c[..=order];
             if first {
                 let slope = x.with(|i| c[1].get(i) / unit);
-                self.find_staying(mode, Step { now: clock.now, c, scale: unit }, &slope);
+                self.find_staying(mode, Step { now: clock.now, c, scale: unit, size: ahead.step }, &slope);
             }
             let way = Way { mode, now: clock.now, remaining, grace: clock.grace(), first };
             let Some(Believed { h, found, end }) = self.believed(&way, c, unit, ahead.step)? else {
@@ -99,7 +99,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 return Ok(self.crossed(
                     mode,
                     &found,
-                    (Step { now: clock.now, c, scale: unit }, None),
+                    (Step { now: clock.now, c, scale: unit, size: h }, None),
                     remaining,
                     observer,
                 ));
@@ -222,7 +222,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             held.0.clear();
             let found = self.first_crossing(
                 mode,
-                Step { now, c, scale: unit },
+                Step { now, c, scale: unit, size: h },
                 Range { limit, first, roughly: false },
                 Some(&mut held),
             );

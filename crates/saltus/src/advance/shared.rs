@@ -13,11 +13,13 @@ use super::Smooth;
 /// below it, costs no digits: half of what numbers have, so that the guard is one.
 const LARGER: i64 = 511;
 
-/// A step's start, dense output and size.
+/// A step's start, its dense output in powers of time in units of `scale`, and its size, which is
+/// that of differences along it.
 pub(super) struct Step<'c, S> {
     pub(super) now: Time,
     pub(super) c: &'c [S],
     pub(super) scale: f64,
+    pub(super) size: f64,
 }
 
 impl<S> Clone for Step<'_, S> {
@@ -79,7 +81,7 @@ impl<'c, S: State> Shared<'c, S> {
 /// Time and state at the sample times of a step.
 #[inline(never)]
 fn sampled<S: State>(
-    Step { now, c, scale }: Step<'_, S>,
+    Step { now, c, scale, .. }: Step<'_, S>,
     limit: f64,
     smooth: Smooth,
 ) -> ([f64; SAMPLES], [S; SAMPLES]) {

@@ -86,7 +86,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 }
             }
             let dense = self.dense(mode, clock.now.seconds(), &x.clone(), h, &trial.clone());
-            let step = Step { now: clock.now, c: dense.as_ref(), scale: h };
+            let step = Step { now: clock.now, c: dense.as_ref(), scale: h, size: h };
             if first
                 && h > f64::EPSILON * clock.now.seconds().abs()
                 && self.contradicted(mode, &x.clone(), &slope.clone(), step)
@@ -165,7 +165,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let settled = Range { roughly: false, ..range };
         if let Some(Closer { dense, h, ahead, slope: arrived }) = self.closer(mode, x, slope, step, rough, range.limit)
         {
-            let closer = Step { now: step.now, c: dense.as_ref(), scale: h };
+            let closer = Step { now: step.now, c: dense.as_ref(), scale: h, size: h };
             let range = Range { limit: ahead, ..settled };
             if let Some(again) = self.first_crossing(mode, closer, range, None)? {
                 return Ok(self.crossed(mode, &again, (closer, Some(arrived)), remaining, observer));
@@ -189,7 +189,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         &mut self,
         mode: A::Mode,
         found: &OnStep<A>,
-        (Step { now, c, scale }, slope): (Step<'_, A::State>, Option<A::State>),
+        (Step { now, c, scale, .. }, slope): (Step<'_, A::State>, Option<A::State>),
         remaining: f64,
         observer: &mut impl Observer<A>,
     ) -> ArcEnd<A> {

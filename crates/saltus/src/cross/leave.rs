@@ -34,9 +34,9 @@ impl Search<'_> {
     /// `order` where that is found.
     ///
     /// If the root is spent and m is odd, this is the fall that was spent; with m even it only
-    /// touched zero there, and falls again. Where rounding hides which it was, what longer
-    /// stretches have shown decides; and if they show that the guard rises first, it falls where
-    /// their polynomial does.
+    /// touched zero there, and falls again, unless it came to fall. Where rounding hides which it
+    /// was, what longer stretches have shown decides; and if they show that the guard rises first,
+    /// it falls where their polynomial does.
     pub(super) fn left(&mut self, order: Option<f64>, b: f64) -> Part {
         if !self.spent {
             return Part::AtStart;
@@ -54,14 +54,15 @@ impl Search<'_> {
         } else {
             shown.filter(|it| !linear && it.touches()).map(|it| it.length())
         };
-        if touched.is_some_and(|b| !self.comes_from_above(b)) { Part::AtStart } else { Part::None(Side::Outside) }
+        if touched.is_some_and(|b| !self.came_to_fall(b)) { Part::AtStart } else { Part::None(Side::Outside) }
     }
 
-    /// Whether the guard came to its spent root from above, along the flow that leaves it: a time
-    /// `b` before the root it is above it by half of what it is below it as long after, or more.
-    fn comes_from_above(&mut self, b: f64) -> bool {
+    /// Whether the guard came to its spent root from above or along a plateau, on the flow that
+    /// leaves it: a time `b` before the root it is above it by half of what it is below it as long
+    /// after, or more, or has the very value of the root.
+    fn came_to_fall(&mut self, b: f64) -> bool {
         let [before, after] = [-b, b].map(|s| (self.guard)(s) - self.base);
-        before > -0.5 * after
+        before > -0.5 * after || before == 0.0
     }
 
     /// Of the times close to a fall that rounding hides, the nearest at which rounding leaves the

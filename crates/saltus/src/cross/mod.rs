@@ -137,16 +137,16 @@ pub fn first_fall(mut guard: impl FnMut(f64) -> f64, span: f64, start: Start) ->
     Search::new(&mut guard, span, 0.0, 0.0).first_fall(start, None)
 }
 
-/// The same for a guard of this `value` at the start of a stretch of an arc, where times are `tick`
-/// apart.
+/// The same for a guard of this `value` at the start of a stretch of an arc that began so long
+/// `behind` it, where times are `tick` apart.
 pub(crate) fn first_fall_on_arc(
     guard: &mut dyn FnMut(f64) -> f64,
     value: f64,
-    span: f64,
+    (behind, span): (f64, f64),
     start: Start,
     tick: f64,
 ) -> Result<Searched, Undefined> {
-    Search::new(guard, span, 0.0, tick).at_start(value).first_fall(start, None)
+    Search { behind, ..Search::new(guard, span, 0.0, tick) }.at_start(value).first_fall(start, None)
 }
 
 /// The same for a guard of these `values` at the [`sample_times`] of a step, on whose dense output
@@ -256,7 +256,7 @@ mod tests {
             for bent in [0.1, 1.0, 3.0] {
                 let guard = |s: f64| if (s - hole).abs() < 1e-3 { f64::NAN } else { 1.0 - bent * s * (1.0 - s) };
                 let at_hand = first_fall_on_step(&mut { guard }, &times.map(guard), 1.0, Start::Open, 0.0, 0.0);
-                let asked = first_fall_on_arc(&mut { guard }, guard(0.0), 1.0, Start::Open, 0.0);
+                let asked = first_fall_on_arc(&mut { guard }, guard(0.0), (0.0, 1.0), Start::Open, 0.0);
                 assert_eq!(at_hand, asked, "a hole at {hole}, bent by {bent}");
             }
         }

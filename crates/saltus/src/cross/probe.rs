@@ -20,6 +20,8 @@ const STANDS_AT: [f64; 2] = [0.3, 0.6];
 pub(super) struct Search<'a> {
     pub(super) guard: &'a mut dyn FnMut(f64) -> f64,
     pub(super) span: f64,
+    /// How long before the start the guard may be asked.
+    pub(super) behind: f64,
     /// The spacing of the guard's own time, which may be coarser than that of numbers within the
     /// interval.
     pub(super) tick: f64,
@@ -104,6 +106,7 @@ impl<'a> Search<'a> {
         Self {
             guard,
             span,
+            behind: span,
             tick,
             spent: false,
             start: None,

@@ -95,13 +95,13 @@ impl Search<'_> {
         })
     }
 
-    /// On which side the guard was shortly before it became zero at the start: at the last time
-    /// that differs from it.
+    /// On which side the guard was before it became zero at the start: at the last time that
+    /// differs from it, however long ago in the same arc.
     fn side_before(&mut self) -> Side {
-        let mut back = self.span * MINUTE;
-        while back < self.span {
+        let mut back = self.behind.min(self.span * MINUTE);
+        while back > 0.0 {
             match Side::of((self.guard)(-back), Side::Wall) {
-                Side::Wall => back *= 2.0,
+                Side::Wall if back < self.behind => back = self.behind.min(2.0 * back),
                 side => return side,
             }
         }
