@@ -3,7 +3,7 @@
 
 use proptest::prelude::*;
 use saltus::nalgebra::{self, Vector2, vector};
-use saltus::{ErrorKind, Filippov, Side, Sides, Simulation};
+use saltus::{Auto, Entry, ErrorKind, Filippov, Hybrid, Jet, Rodas5P, Side, Sides, Simulation, Stop, Tsit5};
 
 /// h = s (v - w(t)) with a belt of speed w(t) = A sin(ω t + φ) + c: scale, amplitude, frequency,
 /// offset.
@@ -93,5 +93,35 @@ proptest! {
             .moving(move |at, _| if at == t { -rate } else if at < t { -before } else { -behind });
         let run = Simulation::of(&Filippov::of(sides)).run(Side::Sliding, 0.0, t..t + 1.0).map(|run| run.end.state);
         prop_assert!(run.as_ref().is_ok_and(|x| (x - behind).abs() < 1e-6), "{run:?}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1000))]
+
+    /// A reset onto a plane along which the flow runs, q·f = 0: the plane's guard is rounding from
+    /// there on, and nothing more is due.
+    #[test]
+    fn a_flow_along_a_plane_stays_on_it(
+        f in prop::array::uniform3(-3_i32..4), w in prop::array::uniform3(-3_i32..4), to in prop::array::uniform3(-4_i32..5),
+        affine in any::<bool>(), method in 0..4_usize, began in -5.0..5.0_f64,
+    ) {
+        let [f, w, to] = [f, w, to].map(|list| list.map(f64::from));
+        let q = [f[1] * w[2] - f[2] * w[1], f[2] * w[0] - f[0] * w[2], f[0] * w[1] - f[1] * w[0]];
+        prop_assume!(q != [0.0; 3]);
+        let dot = |a: [f64; 3], b: &[f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let (size, away) = (dot(q, &q), dot(q, &to));
+        let from = [0, 1, 2].map(|i| to[i] - q[i] / size);
+        let mut flow = Hybrid::new().mode("run", move |_t, _x: &[f64; 3]| f);
+        if method == 0 {
+            flow = flow.series("run", move |t, _x: [Jet<'_>; 3]| f.map(|f| t * 0.0 + f));
+        }
+        flow = flow.edge("run", "run", move |_t, x| dot(q, x) - away, move |_t, _x| to).entry(Entry::Fire);
+        if affine {
+            flow = flow.affine();
+        }
+        let stepper = [Auto::new(), Auto::new(), Auto::from(Tsit5), Auto::from(Rodas5P)][method];
+        let run = Simulation::of(&flow).stepper(stepper).most_jumps(9).run("run", from, began..began + 3.0).unwrap();
+        prop_assert_eq!((run.end.jumps, run.end.stop), (1, Stop::Time));
     }
 }

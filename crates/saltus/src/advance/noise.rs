@@ -2,7 +2,7 @@
 //! of the steps.
 
 use crate::automaton::Automaton;
-use crate::certainty::{FAR, FEW, ROUGHLY, ROUNDINGS, SMALL, TINY};
+use crate::certainty::{FAR, FEW, ROUGHLY, ROUNDINGS, SMALL, SURELY, TINY};
 use crate::cross::{self, AT_START, Crossing, Start, sample_times};
 use crate::state::State;
 use crate::step::Stepper;
@@ -145,9 +145,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let (t, x, by) = (step.now.seconds(), &step.c[0], SMALL * step.size);
             self.memory.stats.guards += 2;
             let guard = |s: f64| self.guard(edge, t + s, &x.with(|i| x.get(i) + s * slope.get(i)));
+            let moved = (guard(by) - guard(-by)).abs();
+            // Of a crossing at once rounding has left nothing.
+            let slack = if slack > 0.0 { slack } else { self.own_rounding(edge, t, &x.clone()) };
             // A guard that moves by more than a million times what rounding leaves of it has left
             // its wall.
-            if (guard(by) - guard(-by)).abs() <= FAR * FAR * slack {
+            if moved <= FAR * FAR * slack {
                 self.memory.at_wall(edge, 0.0);
             }
         }
@@ -235,11 +238,17 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         );
     }
 
-    /// How far rounding may take the rate of a guard from differences over `by`.
-    fn rate_rounding(&mut self, edge: A::Edge, t: f64, x: &A::State, by: f64) -> f64 {
+    /// How far rounding the state and the time may move a guard.
+    #[cold]
+    fn own_rounding(&mut self, edge: A::Edge, t: f64, x: &A::State) -> f64 {
         self.memory.stats.guards += 1;
         let g = self.guard(edge, t, x);
-        ROUNDINGS * (self.guard_rounding(edge, t, x, g, x) + self.time_rounding(edge, t, x, g)) / by
+        self.guard_rounding(edge, t, x, g, x) + self.time_rounding(edge, t, x, g)
+    }
+
+    /// How far rounding may take the rate of a guard from differences over `by`.
+    fn rate_rounding(&mut self, edge: A::Edge, t: f64, x: &A::State, by: f64) -> f64 {
+        ROUNDINGS * self.own_rounding(edge, t, x) / by
     }
 
     /// Where the flow carries the guard of `edge` at `x`: the sign of n·f + ∂g/∂t, beyond what
@@ -311,7 +320,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     }
 
     /// Whether the guard of an edge that stays rises from its wall on a step up to its `limit`,
-    /// beyond what rounding and the tolerance leave open: it is then armed like any other.
+    /// surely beyond what rounding and the tolerance leave open: it is then armed like any other.
     #[cold]
     pub(super) fn rises_from<'c>(
         &mut self,
@@ -323,13 +332,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         self.memory.stats.guards += cross::SAMPLES as u64;
         let automaton = self.automaton;
         let values = shared.values(step, limit, self.smooth, |t, x| automaton.guard(edge, t, x) - level);
-        let times = sample_times(0.0, limit);
-        let highest = times.into_iter().zip(values).max_by(|a, b| a.1.total_cmp(&b.1));
-        highest.is_some_and(|(s, above)| {
-            let x = step.at(s);
-            let steps = self.memory.stats.steps - self.memory.steps_before + 1;
-            above > self.within_steps(edge, step.time(s), &x, above + level, steps)
-        })
+        let highest = sample_times(0.0, limit).into_iter().zip(values).max_by(|a, b| a.1.total_cmp(&b.1));
+        let Some((s, above)) = highest.filter(|&(_, above)| above > 0.0) else { return false };
+        let steps = self.memory.stats.steps - self.memory.steps_before + 1;
+        above > SURELY * self.within_steps(edge, step.time(s), &step.at(s), above + level, steps)
     }
 
     /// Where on a step an edge leaves its wall, on which it stays or from which it falls: where the
