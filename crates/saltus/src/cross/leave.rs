@@ -1,6 +1,6 @@
 //! How a guard leaves a root at the start: by a fall, by a rise that rounding hides, or by a touch.
 
-use crate::certainty::{FEW, ROUGHLY, SURELY};
+use crate::certainty::{FEW, ROUGHLY, ROUNDINGS, SURELY};
 
 use super::Undefined;
 use super::departure::Departure;
@@ -59,10 +59,11 @@ impl Search<'_> {
 
     /// Whether the guard came to its spent root from above or along a plateau, on the flow that
     /// leaves it: a time `b` before the root it is above it by half of what it is below it as long
-    /// after, or more, or has the very value of the root.
+    /// after, or more; or it has been zero for long, and not for a step of rounding.
     fn came_to_fall(&mut self, b: f64) -> bool {
         let [before, after] = [-b, b].map(|s| (self.guard)(s) - self.base);
-        before > -0.5 * after || before == 0.0
+        let mut is_zero = |times: f64| (self.guard)(-times * b) == 0.0;
+        before > -0.5 * after || self.base == 0.0 && [1.0, FEW, ROUNDINGS, SURELY].into_iter().all(&mut is_zero)
     }
 
     /// Of the times close to a fall that rounding hides, the nearest at which rounding leaves the
