@@ -9,7 +9,7 @@ use std::ops::ControlFlow;
 use std::time::Instant;
 
 use saltus::{About, Automaton, Edges, Entry, JumpOf, Observer, Refusal, Simulation, Vector};
-use saltus_examples::{Figure, slope};
+use saltus_examples::growth;
 
 /// Leaky integrate-and-fire neurons, u' = I - u, each coupled to all others (R. Mirollo, S.
 /// Strogatz, SIAM J. Appl. Math. 50 (1990) 1645): at u = 1 a neuron spikes, begins anew at 0, and
@@ -120,11 +120,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("{n:6} neurons: {:9.1} µs a spike, off by {off:.0e}", 1e6 * each);
         points.push([(n as f64).log10(), (1e6 * each).log10()]);
     }
-    let power = slope(&points);
-    println!("the time of a spike grows as N^{power:.2}");
-    let title = format!("A spike of N coupled neurons: time grows as N^{power:.2}");
-    let picture = Figure::new(&title, "neurons (log₁₀ N)", "time of a spike (log₁₀ µs)").line("", points.clone());
-    let place = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/trust/neurons.svg");
-    std::fs::write(place, picture.dots("", points).svg())?;
+    growth("neurons", "a spike of N coupled neurons", ["neurons (log₁₀ N)", "time of a spike (log₁₀ µs)"], points)?;
     Ok(())
 }

@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 use std::time::Instant;
 
 use saltus::{Hybrid, Rodas5P, Simulation, Sparsity, Vector};
-use saltus_examples::{Figure, slope};
+use saltus_examples::growth;
 
 /// The sensor in the middle of the rod switches the heater off at the second of these temperatures,
 /// and on at the first.
@@ -106,11 +106,6 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("{n:6} cells: {:9.2} ms a switch, {steps:.0} steps of {step:.1} µs, off by {off:.0e}", 1e3 * each);
         points.push([(n as f64).log10(), step.log10()]);
     }
-    let power = slope(&points);
-    println!("the time of a step grows as N^{power:.2}");
-    let title = format!("A heated rod of N cells: a step's time grows as N^{power:.2}");
-    let picture = Figure::new(&title, "cells (log₁₀ N)", "time of a step (log₁₀ µs)").line("", points.clone());
-    let place = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/trust/rod.svg");
-    std::fs::write(place, picture.dots("", points).svg())?;
+    growth("rod", "a step of a heated rod of N cells", ["cells (log₁₀ N)", "time of a step (log₁₀ µs)"], points)?;
     Ok(())
 }

@@ -68,13 +68,10 @@ const WRITTEN: usize = 12;
 
 fn written(state: &[f64], names: &[Cow<'static, str>]) -> String {
     let named = !names.is_empty() && names.len() == state.len();
-    let each = state.iter().take(WRITTEN).enumerate();
-    let mut items: Vec<_> =
-        each.map(|(i, value)| if named { format!("{} = {value:?}", names[i]) } else { format!("{value:?}") }).collect();
-    if state.len() > WRITTEN {
-        items.push(format!("… {} coordinates", state.len()));
-    }
-    let list = items.join(", ");
+    let each = state.iter().enumerate();
+    let item =
+        |(i, value): (usize, &f64)| if named { format!("{} = {value:?}", names[i]) } else { format!("{value:?}") };
+    let list = first_of(state.len(), &mut each.map(item));
     if named { format!("({list})") } else { format!("[{list}]") }
 }
 
@@ -82,12 +79,13 @@ fn written(state: &[f64], names: &[Cow<'static, str>]) -> String {
 #[cold]
 pub(crate) fn not_finite(state: &impl State) -> String {
     let wrong = || (0..state.len()).filter(|&i| !state.get(i).is_finite());
-    let mut each: Vec<_> = wrong().take(WRITTEN).map(|i| format!("{}' = {}", state.name(i), state.get(i))).collect();
-    let count = wrong().count();
-    if count > WRITTEN {
-        each.push(format!("… {count} coordinates"));
-    }
-    each.join(", ")
+    first_of(wrong().count(), &mut wrong().map(|i| format!("{}' = {}", state.name(i), state.get(i))))
+}
+
+/// The first of so many coordinates, and of more how many there are.
+fn first_of(count: usize, each: &mut dyn Iterator<Item = String>) -> String {
+    let all = (count > WRITTEN).then(|| format!("… {count} coordinates"));
+    each.take(WRITTEN).chain(all).collect::<Vec<_>>().join(", ")
 }
 
 /// The kinds of failure.

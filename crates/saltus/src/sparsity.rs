@@ -1,5 +1,6 @@
 //! Which coordinates of a flow read which of the state: the pattern of its Jacobian.
 
+use std::borrow::Cow;
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
@@ -135,6 +136,10 @@ impl Sparsity {
     /// read near `x`, behind a switch that is off there, is not found.
     #[must_use]
     pub fn found<S: State>(x: &S, mut flow: impl FnMut(&S) -> S) -> Self {
+        Self::of_flow(&listed(x), &mut |list| listed(&flow(&x.with(|i| list[i]))))
+    }
+
+    fn of_flow(x: &[f64], flow: Flow<'_>) -> Self {
         let n = x.len();
         let [here, there] = two_near(x);
         let base = flow(&here);
@@ -149,9 +154,9 @@ impl Sparsity {
                 for &b in of_colour {
                     moves[blocks[b].0..blocks[b].1].fill(Some(b));
                 }
-                let changed = flow(&here.with(|j| if moves[j].is_some() { there.get(j) } else { here.get(j) }));
+                let changed = flow(&mixed(&here, &there, |j| moves[j].is_some()));
                 for (i, kept) in kept.iter_mut().enumerate() {
-                    if changed.get(i).to_bits() != base.get(i).to_bits() {
+                    if changed[i].to_bits() != base[i].to_bits() {
                         kept.extend(reads[i].iter().filter(|&&b| moves.get(blocks[b].0) == Some(&Some(b))));
                     }
                 }
@@ -218,13 +223,28 @@ impl Sparsity {
         (self.0.columns.get(j), self.0.columns.starts[j])
     }
 
+    /// What is wrong with it as the pattern of a flow at `x`, whose coordinates have names: of
+    /// another length or, where the flow is to be asked, without an entry that it has.
+    pub(crate) fn flaw(
+        &self,
+        x: &[f64],
+        flow: Option<Flow<'_>>,
+        name: &dyn Fn(usize) -> Cow<'static, str>,
+    ) -> Option<String> {
+        if self.len() != x.len() {
+            return Some(format!("has {} coordinates where the state has {}", self.len(), x.len()));
+        }
+        let (i, j) = self.left_out(x, flow?)?;
+        Some(format!("leaves out that {}' reads {}", name(i), name(j)))
+    }
+
     /// An entry (i, j) that the pattern leaves out: near `x` coordinate i of the flow changes as
     /// coordinate j does, and those of a group with it of which i reads none.
     ///
     /// Of columns j and k of one colour the places differ in a binary digit: of the columns with
     /// the digit of j one group is without k. So each entry is looked for by the two groups of
     /// each digit of each colour.
-    pub(crate) fn left_out<S: State>(&self, x: &S, mut flow: impl FnMut(&S) -> S) -> Option<(usize, usize)> {
+    fn left_out(&self, x: &[f64], flow: Flow<'_>) -> Option<(usize, usize)> {
         let n = self.len();
         let [here, there] = two_near(x);
         let base = flow(&here);
@@ -237,9 +257,9 @@ impl Sparsity {
                 moves[j] = true;
                 self.column(j).0.iter().for_each(|&i| read[i] = true);
             }
-            let changed = flow(&here.with(|j| if moves[j] { there.get(j) } else { here.get(j) }));
-            let differs = |i: usize| changed.get(i).is_finite() && changed.get(i) != base.get(i);
-            rows.find(|&i| !read[i] && base.get(i).is_finite() && differs(i))
+            let changed = flow(&mixed(&here, &there, |j| moves[j]));
+            let differs = |i: usize| changed[i].is_finite() && changed[i] != base[i];
+            rows.find(|&i| !read[i] && base[i].is_finite() && differs(i))
         };
         for columns in self.colours() {
             let digits = usize::BITS - (columns.len() - 1).leading_zeros();
@@ -292,13 +312,26 @@ fn part(i: usize) -> f64 {
     (i as f64 * 0.618_033_988_749_894_9).fract()
 }
 
+/// A flow over lists of coordinates: one code for the states of all models.
+pub(crate) type Flow<'a> = &'a mut dyn FnMut(&[f64]) -> Vec<f64>;
+
+/// The coordinates of a state.
+pub(crate) fn listed(x: &impl State) -> Vec<f64> {
+    (0..x.len()).map(|i| x.get(i)).collect()
+}
+
+/// The one state with those coordinates of the other one that move.
+fn mixed(here: &[f64], there: &[f64], moves: impl Fn(usize) -> bool) -> Vec<f64> {
+    (0..here.len()).map(|j| if moves(j) { there[j] } else { here[j] }).collect()
+}
+
 /// Two states near `x` that share no coordinate, and in which none is zero: nothing of a flow there
 /// is lost to a factor.
-fn two_near<S: State>(x: &S) -> [S; 2] {
-    let largest = (0..x.len()).map(|i| x.get(i).abs()).fold(0.0, f64::max);
+fn two_near(x: &[f64]) -> [Vec<f64>; 2] {
+    let largest = x.iter().map(|x| x.abs()).fold(0.0, f64::max);
     let of_none = if largest > 0.0 { largest } else { 1.0 };
-    let size = |i: usize| if x.get(i) == 0.0 { of_none } else { x.get(i) };
-    [NEARBY, AWAY].map(|by| x.with(|i| x.get(i) + by * (1.0 + part(i)) * size(i)))
+    let size = |x: f64| if x == 0.0 { of_none } else { x };
+    [NEARBY, AWAY].map(|by| x.iter().enumerate().map(|(i, &x)| x + by * (1.0 + part(i)) * size(x)).collect())
 }
 
 /// The columns of each colour, such that no two of one colour share a row: each column in turn gets

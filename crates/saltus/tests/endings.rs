@@ -165,24 +165,25 @@ fn what_lasts_for_ever() {
     assert_eq!(run.trajectory.at(1e9), Some(1.0 + 2e9));
 }
 
-/// x' = -x, by a formula.
-struct Decay;
+/// x' = r x, by a formula.
+struct Growth(f64);
 
-impl Decay {
-    fn decayed(&self, (): (), _t: f64, x: &f64, s: f64) -> f64 {
-        x * (-s).exp()
+impl Growth {
+    fn grown(&self, (): (), _t: f64, x: &f64, s: f64) -> f64 {
+        x * (self.0 * s).exp()
     }
 }
 
-impl Automaton for Decay {
+impl Automaton for Growth {
     type Mode = ();
     type State = f64;
     type Edge = ();
+
     fn flow(&self, (): (), _t: f64, x: &f64) -> f64 {
-        -x
+        self.0 * x
     }
     fn solution(&self, (): (), _t: f64, _x: &f64) -> Solution<Self> {
-        Solution::Formula(Self::decayed)
+        Solution::Formula(Self::grown)
     }
     fn edges(&self, (): ()) -> Edges<'_, ()> {
         Edges::none()
@@ -199,7 +200,7 @@ impl Automaton for Decay {
 #[test]
 fn a_formula_recorded_over_long_spans() {
     for end in SPANS {
-        let run = Simulation::of(&Decay).run((), 1.0, 0.0..end).unwrap();
+        let run = Simulation::of(&Growth(-1.0)).run((), 1.0, 0.0..end).unwrap();
         assert_eq!(run.end.stop, if end == f64::INFINITY { Stop::Forever } else { Stop::Time });
         for t in [0.0_f64, 1e-3, 0.5, 1.0, 7.0, 100.0, 700.0] {
             let exact = (-t).exp();
@@ -381,37 +382,6 @@ fn no_run_jumps_more_often_than_it_may() {
     for most in 0..all {
         let end = Simulation::of(&ball).most_jumps(most).run("flight", [1.0, 0.0], 0.0..35.0).unwrap().end;
         assert_eq!((end.stop, end.jumps), (Stop::Jumps { most }, most));
-    }
-}
-
-/// x' = r x, by a formula.
-struct Growth(f64);
-
-impl Growth {
-    fn grown(&self, (): (), _t: f64, x: &f64, s: f64) -> f64 {
-        x * (self.0 * s).exp()
-    }
-}
-
-impl Automaton for Growth {
-    type Mode = ();
-    type State = f64;
-    type Edge = ();
-
-    fn flow(&self, (): (), _t: f64, x: &f64) -> f64 {
-        self.0 * x
-    }
-    fn solution(&self, (): (), _t: f64, _x: &f64) -> Solution<Self> {
-        Solution::Formula(Self::grown)
-    }
-    fn edges(&self, (): ()) -> Edges<'_, ()> {
-        Edges::none()
-    }
-    fn guard(&self, (): (), _t: f64, _x: &f64) -> f64 {
-        1.0
-    }
-    fn reset(&self, (): (), (): (), _t: f64, x: &f64) -> Result<((), f64), Refusal> {
-        Ok(((), *x))
     }
 }
 

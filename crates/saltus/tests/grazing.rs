@@ -88,39 +88,50 @@ proptest! {
 
     /// What the error of the steps decides is doubted, and nothing else is.
     #[test]
-    fn what_the_error_of_a_step_decides_is_doubted(
-        method in 0..4_usize,
-        digits in 3.0..12.0_f64,
-        form in 0..3_usize,
-        (affine, above) in any::<(bool, bool)>(),
-        (miss, scale) in (2.0..14.0_f64, -3.0..3.0_f64),
-        (phase, rate) in (0.0..3.0_f64, -1.0..1.5_f64),
-    ) {
-        let [tolerance, scale, rate] = [-digits, scale, rate].map(|power| 10_f64.powf(power));
-        let miss = 10_f64.powf(-miss) * if above { 1.0 } else { -1.0 };
-        let (jumps, doubts) = falls(method, tolerance, (form, affine, 1.0), (miss, scale), (phase, rate));
-        let right = if above { 0 } else if form == 1 { 6 } else { 3 };
-        prop_assert!(jumps == right || doubts > 0, "{jumps} falls, and no doubt");
-        prop_assert!(miss.abs() < 1e4 * tolerance || doubts == 0, "{doubts} doubts, {jumps} falls");
+    fn what_the_error_of_a_step_decides_is_doubted(turn in turns()) {
+        decided(1.0, turn)?;
     }
 
     /// The same from below, for an edge that waits.
     #[test]
-    fn what_comes_up_to_within_the_error_of_a_step_is_doubted(
-        method in 0..4_usize,
-        digits in 3.0..12.0_f64,
-        form in 0..3_usize,
-        (affine, above) in any::<(bool, bool)>(),
-        (miss, scale) in (2.0..14.0_f64, -3.0..3.0_f64),
-        (phase, rate) in (0.0..3.0_f64, -1.0..1.5_f64),
-    ) {
-        let [tolerance, scale, rate] = [-digits, scale, rate].map(|power| 10_f64.powf(power));
-        let miss = 10_f64.powf(-miss) * if above { -1.0 } else { 1.0 };
-        let (jumps, doubts) = falls(method, tolerance, (form, affine, -1.0), (miss, scale), (phase, rate));
-        let right = if !above { 0 } else if form == 1 { 6 } else { 3 };
-        prop_assert!(jumps == right || doubts > 0, "{jumps} falls instead of {right}, and no doubt");
-        prop_assert!(miss.abs() < 1e4 * tolerance || doubts == 0, "{doubts} doubts, {jumps} falls");
+    fn what_comes_up_to_within_the_error_of_a_step_is_doubted(turn in turns()) {
+        decided(-1.0, turn)?;
     }
+}
+
+/// A guard that turns near zero: the method and the digits of its tolerance; the form of the guard,
+/// whether that is promised affine and whether it misses zero; by how much, and in which unit; the
+/// phase and the rate.
+type Turn = (usize, f64, usize, (bool, bool), (f64, f64), (f64, f64));
+
+fn turns() -> impl Strategy<Value = Turn> {
+    (
+        0..4_usize,
+        3.0..12.0_f64,
+        0..3_usize,
+        any::<(bool, bool)>(),
+        (2.0..14.0_f64, -3.0..3.0_f64),
+        (0.0..3.0_f64, -1.0..1.5_f64),
+    )
+}
+
+/// Of a guard that comes near zero from this `side` its falls are as many as they are, or doubted;
+/// and doubted only where the error of the steps is as large as what it misses zero by.
+fn decided(side: f64, turn: Turn) -> Result<(), TestCaseError> {
+    let (method, digits, form, (affine, misses), (miss, scale), (phase, rate)) = turn;
+    let [tolerance, scale, rate] = [-digits, scale, rate].map(|power| 10_f64.powf(power));
+    let miss = 10_f64.powf(-miss) * if misses { 1.0 } else { -1.0 };
+    let (jumps, doubts) = falls(method, tolerance, (form, affine, side), (miss, scale), (phase, rate));
+    let right = if misses {
+        0
+    } else if form == 1 {
+        6
+    } else {
+        3
+    };
+    prop_assert!(jumps == right || doubts > 0, "{jumps} falls instead of {right}, and no doubt");
+    prop_assert!(miss.abs() < 1e4 * tolerance || doubts == 0, "{doubts} doubts, {jumps} falls");
+    Ok(())
 }
 
 /// The end of ten bounces of a ball with drag, dropped from a height in a unit in which that is

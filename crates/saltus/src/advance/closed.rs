@@ -15,7 +15,7 @@ use crate::step::Stepper;
 use crate::time::{LAST, Span, Time};
 
 use super::crossing::Close;
-use super::exact::{beyond_numbers, natural};
+use super::exact::{in_numbers, natural};
 use super::{Advance, ArcEnd};
 
 /// The longest first piece of an arc, in times in which its solution changes by its own size.
@@ -53,10 +53,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             }
             None => Close { span: remaining, time: clock.end, state: at(remaining.min(LAST)) },
         };
-        if !close.state.is_finite() {
-            let time = if first.is_some() { close.time } else { clock.in_numbers().end };
-            return Err(beyond_numbers(mode, time, &close.state));
-        }
+        let end = if first.is_some() { close.time } else { clock.in_numbers().end };
+        let close = Close { state: in_numbers(mode, end, close.state)?, ..close };
         let (told, reached) = self.interpolated(mode, x, now, close.span, at, observer);
         if reached < close.span.min(LAST) && told.is_continue() {
             let stop = Stop::Steps { most: self.options.most_steps };

@@ -43,10 +43,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         };
         let first = self.first_on_solution(mode, &c[0], clock, at, search, observer)?;
         if let Some((cut, stop)) = self.cut_before(first.as_ref()) {
-            let (time, state) = (now.after(cut), at(cut));
-            if !state.is_finite() {
-                return Err(beyond_numbers(mode, time, &state));
-            }
+            let time = now.after(cut);
+            let state = in_numbers(mode, time, at(cut))?;
             let told = observer.piece(mode, &Piece::new(now, cut, 1.0, c));
             let stop = if told.is_break() { Stop::Observer } else { stop };
             return Ok(ArcEnd::Stop { stop, time, state });
@@ -57,10 +55,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 self.close_on_solution(first, now, at, remaining)
             }
             None => {
-                let (end, state) = (clock.in_numbers().end, at(remaining.min(LAST)));
-                if !state.is_finite() {
-                    return Err(beyond_numbers(mode, end, &state));
-                }
+                let state = in_numbers(mode, clock.in_numbers().end, at(remaining.min(LAST)))?;
                 Close { span: remaining, time: clock.end, state }
             }
         };
@@ -201,9 +196,12 @@ pub(super) fn natural<S: State>(c: &[S]) -> f64 {
     times().fold(slowest, f64::min).max(SMALL * slowest)
 }
 
-/// An exact solution that is no number at a time to which the run was to go.
-#[cold]
-pub(super) fn beyond_numbers<M: Copy + Debug, S: State>(mode: M, time: Time, state: &S) -> Error {
-    let place = Place::new(time.seconds(), mode, None::<()>, state);
-    Error::new(ErrorKind::Flow, place).noting(Some("the exact solution leaves the range of numbers".to_owned()))
+/// The state of an exact solution at a time to which the run was to go: an error where it is no
+/// number.
+pub(super) fn in_numbers<M: Copy + Debug, S: State>(mode: M, time: Time, state: S) -> Result<S, Error> {
+    if state.is_finite() {
+        return Ok(state);
+    }
+    let place = Place::new(time.seconds(), mode, None::<()>, &state);
+    Err(Error::new(ErrorKind::Flow, place).noting(Some("the exact solution leaves the range of numbers".to_owned())))
 }

@@ -4,11 +4,8 @@
 use crate::automaton::Automaton;
 use crate::certainty::{ROUGHLY, ROUNDINGS, SMALL, SURELY};
 use crate::cross::{Doubt, Evidence, Turn};
-use crate::inspection::Inspection;
-use crate::observe::Observer;
 use crate::state::State;
 use crate::step::Stepper;
-use crate::time::Time;
 
 use super::Advance;
 use super::crossing::Range;
@@ -149,7 +146,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let middle = 0.5 * root;
         let (start, half) = (self.on(edge, step, 0.0), self.on(edge, step, middle));
         let (absolute, x) = (self.options.tolerance.absolute, step.at(middle));
-        let off = self.moved(edge, step.time(middle), &x, half, |_| ROUNDINGS * absolute);
+        let off = self.moved(edge, step.time(middle), &x, half, &|_| ROUNDINGS * absolute);
         self.memory.resolved = start.abs().max(half.abs()) > SURELY * off;
         (!self.memory.resolved).then_some(Evidence::doubtful(Doubt::Grazing, 0.0, root))
     }
@@ -162,29 +159,14 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     pub(super) fn hold_down(&mut self, edge: A::Edge, step: Step<'_, A::State>, limit: f64) {
         let (start, later) = (step.at(0.0), [0.5 * limit, limit].map(|s| step.at(s)));
         let (absolute, t, g) = (self.options.tolerance.absolute, step.time(0.0), self.on(edge, step, 0.0));
-        let most = |i: usize, of: &dyn Fn(f64) -> f64| later.iter().map(|x| of(x.get(i)).abs()).fold(0.0, f64::max);
-        let way = self.moved(edge, t, &start, g, |i| most(i, &|x| x - start.get(i)));
-        if way > 0.0 {
-            let size = self.moved(edge, t, &start, g, |i| most(i, &|x| x).max(start.get(i).abs()));
-            let off = self.moved(edge, t, &start, g, |_| ROUNDINGS * absolute);
+        let most = |i: usize, from: f64| later.iter().fold(0.0, |most: f64, x| most.max((x.get(i) - from).abs()));
+        let mut moved = |by: &dyn Fn(usize) -> f64| self.moved(edge, t, &start, g, by);
+        if moved(&|i| most(i, start.get(i))) > 0.0 {
+            let size = moved(&|i| most(i, 0.0).max(start.get(i).abs()));
+            let off = moved(&|_| ROUNDINGS * absolute);
             self.memory.resolved = size > SURELY * off;
             self.held_down = (!self.memory.resolved).then_some(edge);
         }
-    }
-
-    /// After an arc from `began` to `time`: doubts the edge that was held down on it, if one was.
-    #[cold]
-    #[inline(never)]
-    pub(super) fn doubt_held_down(
-        &mut self,
-        mode: A::Mode,
-        edge: A::Edge,
-        (began, time): (Time, Time),
-        observer: &mut impl Observer<A>,
-    ) {
-        let span = time.since(began);
-        let evidence = Evidence::doubtful(Doubt::Grazing, 0.0, span);
-        observer.inspection(&Inspection { mode, edge, start: began, span, evidence });
     }
 
     /// Whether the error of the step decides that a guard falls at `root`: where the jump before
@@ -246,7 +228,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     fn error_of(&mut self, edge: A::Edge, (step, range): (Step<'_, A::State>, Range), s: f64, g: f64) -> f64 {
         let (tolerance, start, end) = (self.options.tolerance, &step.c[0], step.at(range.limit));
         let allowed = |i| tolerance.allowed(start.get(i), end.get(i));
-        ROUNDINGS * self.moved(edge, step.time(s), &step.at(s), g, allowed)
+        ROUNDINGS * self.moved(edge, step.time(s), &step.at(s), g, &allowed)
     }
 
     /// Where a guard times its `side` of zero, 1 or -1, which turns up between two times, is

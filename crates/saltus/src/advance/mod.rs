@@ -264,7 +264,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let end = end?;
         if let Some(edge) = self.held_down.take() {
             let (ArcEnd::Crossing { time, .. } | ArcEnd::Stop { time, .. }) = end;
-            self.doubt_held_down(mode, edge, (now, time), observer);
+            doubt::<A>(Doubt::Grazing, mode, edge, (now, time), observer);
         }
         self.stayed_inside(mode, x, now, &end, observer)?;
         self.promises(mode, x, now, &end)?;
@@ -319,9 +319,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         self.stays_in(mode, edge, (began, x), (time, state))?;
         let entry = self.automaton.about(edge).entry;
         if entry != Entry::Wait || self.clear_of_zero(edge, began, x) > 0.0 {
-            let span = time.since(began);
-            let evidence = Evidence::doubtful(Doubt::Missed, 0.0, span);
-            observer.inspection(&Inspection { mode, edge, start: began, span, evidence });
+            doubt::<A>(Doubt::Missed, mode, edge, (began, time), observer);
         }
         Ok(())
     }
@@ -375,4 +373,19 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     fn level(&self, edge: A::Edge) -> f64 {
         if self.memory.walls.is_empty() { 0.0 } else { self.memory.level(edge) }
     }
+}
+
+/// Tells an observer of a doubt that is of a whole arc.
+#[cold]
+#[inline(never)]
+fn doubt<A: Automaton>(
+    why: Doubt,
+    mode: A::Mode,
+    edge: A::Edge,
+    (began, time): (Time, Time),
+    observer: &mut impl Observer<A>,
+) {
+    let span = time.since(began);
+    let evidence = Evidence::doubtful(why, 0.0, span);
+    observer.inspection(&Inspection { mode, edge, start: began, span, evidence });
 }

@@ -24,7 +24,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// Each is moved by a part of its size that is large beside rounding and small beside what a
     /// guard bends over.
     pub(super) fn guard_rounding(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64, sizes: &A::State) -> f64 {
-        self.moved(edge, t, x, g, |i| TINY * sizes.get(i).abs()) * (f64::EPSILON / TINY)
+        self.moved(edge, t, x, g, &|i| TINY * sizes.get(i).abs()) * (f64::EPSILON / TINY)
     }
 
     /// What the coordinates of `x` were summed up from: max(|xᵢ|, |xᵢ| at the start of an arc,
@@ -70,7 +70,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// stated to within the absolute tolerance, by that.
     pub(super) fn entry_error(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
         let absolute = self.options.tolerance.absolute;
-        let stated = if self.memory.largest.is_none() { self.moved(edge, t, x, g, |_| absolute) } else { 0.0 };
+        let stated = if self.memory.largest.is_none() { self.moved(edge, t, x, g, &|_| absolute) } else { 0.0 };
         self.still(edge, t, x, g) + stated
     }
 
@@ -87,12 +87,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             return rounding;
         }
         let tolerance = self.options.tolerance;
-        rounding + FEW * steps as f64 * self.moved(edge, t, x, g, |i| tolerance.allowed(x.get(i), x.get(i)))
+        rounding + FEW * steps as f64 * self.moved(edge, t, x, g, &|i| tolerance.allowed(x.get(i), x.get(i)))
     }
 
     /// How far the guard, `g` at `x`, moves with each coordinate i that is moved by `by(i)`, all
     /// together.
-    pub(super) fn moved(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64, by: impl Fn(usize) -> f64) -> f64 {
+    pub(super) fn moved(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64, by: &dyn Fn(usize) -> f64) -> f64 {
         let mut sum = 0.0;
         for k in self.automaton.about(edge).read(x.len()) {
             self.memory.stats.guards += 1;
@@ -147,7 +147,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let guard = |s: f64| self.guard(edge, t + s, &x.with(|i| x.get(i) + s * slope.get(i)));
             let moved = (guard(by) - guard(-by)).abs();
             // Of a crossing at once rounding has left nothing.
-            let slack = if slack > 0.0 { slack } else { self.own_rounding(edge, t, &x.clone()) };
+            let slack = if slack > 0.0 { slack } else { self.own_rounding(edge, t, x) };
             // A guard that moves by more than a million times what rounding leaves of it has left
             // its wall.
             if moved <= FAR * FAR * slack {

@@ -5,7 +5,7 @@ use crate::automaton::Automaton;
 use crate::automaton::solution::Solution;
 use crate::certainty::{SURELY, TINY};
 use crate::error::{Error, ErrorKind, Place};
-use crate::sparsity::Sparsity;
+use crate::sparsity::{Sparsity, listed};
 use crate::state::State;
 use crate::step::Stepper;
 use crate::time::Time;
@@ -78,16 +78,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         now: Time,
         x: &A::State,
     ) -> Result<Sparsity, Error> {
-        let t = now.seconds();
-        let flaw = if sparsity.len() != x.len() {
-            format!("has {} coordinates where the state has {}", sparsity.len(), x.len())
-        } else if !is_due(self.memory.arcs + 1) {
-            return Ok(sparsity);
-        } else {
-            let flow = |x: &A::State| self.automaton.flow(mode, self.smooth.within(t), x);
-            let Some((i, j)) = sparsity.left_out(x, flow) else { return Ok(sparsity) };
-            format!("leaves out that {}' reads {}", x.name(i), x.name(j))
-        };
+        let (t, looked_at) = (now.seconds(), is_due(self.memory.arcs + 1));
+        let flow = |list: &[f64]| self.automaton.flow(mode, self.smooth.within(t), &x.with(|i| list[i]));
+        let flaw = sparsity.flaw(&listed(x), looked_at.then_some(&mut |list| listed(&flow(list))), &|i| x.name(i));
+        let Some(flaw) = flaw else { return Ok(sparsity) };
         let place = Place::new(t, mode, None::<A::Edge>, x);
         Err(Error::new(ErrorKind::Sparsity, place).noting(Some(flaw)))
     }
@@ -136,9 +130,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     fn reach_of(&self, mode: A::Mode, [began, time]: [f64; 2], [x, y]: [&A::State; 2]) -> A::State {
         let flow = self.automaton.flow(mode, self.smooth.within(began), x);
         let by = |i: usize| if i < flow.len() { ((time - began) * flow.get(i)).abs() } else { 0.0 };
-        let size =
-            |i: usize| [y.get(i).abs(), by(i)].into_iter().filter(|s| s.is_finite()).fold(x.get(i).abs(), f64::max);
-        x.with(|i| weight(i) * size(i))
+        let larger = |size: f64, other: f64| if other.is_finite() { size.max(other) } else { size };
+        x.with(|i| weight(i) * larger(larger(x.get(i).abs(), y.get(i).abs()), by(i)))
     }
 
     /// Whether a guard a·x + b, of this arc's states, is another where the search asks it for what

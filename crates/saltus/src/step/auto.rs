@@ -142,7 +142,7 @@ impl Stepper for Auto {
         slope: &S,
         h: f64,
     ) -> Trial<S, Self::Stages<S>> {
-        self.method.trial(flow, t, x, slope, h)
+        self.sparse(flow, t, x, slope, (h, None))
     }
 
     #[inline]

@@ -13,14 +13,12 @@ pub(super) struct Band {
     entries: Vec<f64>,
     /// For each column the row that was taken for it.
     pivots: Vec<usize>,
-    /// A right-hand side, and its solution.
-    work: Vec<f64>,
 }
 
 impl Band {
     /// Of zeros.
     pub(super) fn new(n: usize, (below, above): (usize, usize)) -> Self {
-        Self { below, above, entries: vec![0.0; n * (2 * below + above + 1)], pivots: vec![0; n], work: vec![0.0; n] }
+        Self { below, above, entries: vec![0.0; n * (2 * below + above + 1)], pivots: vec![0; n] }
     }
 
     /// Where the entry (i, j) is.
@@ -60,30 +58,28 @@ impl Band {
         }
     }
 
-    /// The solution for one right-hand side.
-    pub(super) fn solve(&mut self, right: impl Iterator<Item = f64>) -> &[f64] {
+    /// The solution for one right-hand side, in its place.
+    pub(super) fn solve(&self, mut work: Vec<f64>) -> Vec<f64> {
         let n = self.pivots.len();
-        self.work.iter_mut().zip(right).for_each(|(work, right)| *work = right);
         for k in 0..n {
             let (last, pivot) = ((k + self.below).min(n - 1), self.pivots[k]);
             if pivot != k {
-                self.work.swap(k, pivot);
+                work.swap(k, pivot);
             }
-            let value = self.work[k];
-            for i in k + 1..=last {
-                self.work[i] -= self.entries[self.at(i, k)] * value;
-            }
+            let value = work[k];
+            let below = work[k + 1..=last].iter_mut().zip(k + 1..);
+            below.for_each(|(work, i)| *work -= self.entries[self.at(i, k)] * value);
         }
         for k in (0..n).rev() {
             let diagonal = self.at(k, k);
             let width = (k + self.below + self.above).min(n - 1) - k;
             let row = &self.entries[diagonal + 1..=diagonal + width];
             // The next one last, for which the others have waited.
-            let far = row.iter().zip(&self.work[k + 1..]).rev();
-            let value = far.fold(self.work[k] * self.entries[diagonal], |value, (entry, x)| value - entry * x);
-            self.work[k] = value;
+            let far = row.iter().zip(&work[k + 1..]).rev();
+            let value = far.fold(work[k] * self.entries[diagonal], |value, (entry, x)| value - entry * x);
+            work[k] = value;
         }
-        &self.work
+        work
     }
 }
 
@@ -113,7 +109,7 @@ mod tests {
             }
             let right: Vec<f64> = (0..n).map(|_| next()).collect();
             band.factor();
-            let x = band.solve(right.iter().copied());
+            let x = band.solve(right.clone());
             let size = x.iter().map(|x| x.abs()).fold(1.0, f64::max);
             if size > 1e6 {
                 singular += 1; // to rounding, as some without entries above the diagonal are
@@ -121,7 +117,7 @@ mod tests {
             }
             solved += 1;
             for (row, right) in rows.iter().zip(right) {
-                let left: f64 = row.iter().zip(x).map(|(entry, x)| entry * x).sum();
+                let left: f64 = row.iter().zip(&x).map(|(entry, x)| entry * x).sum();
                 assert!((left - right).abs() <= 1e-14 * size, "{n} {below} {above}: {left} {right} {size}");
             }
         }

@@ -97,10 +97,7 @@ impl<L: Stepper, T: Stepper> Stepper for Either<L, T> {
         slope: &S,
         h: f64,
     ) -> Trial<S, Self::Stages<S>> {
-        match self {
-            Self::Loose(method) => method.trial(flow, t, x, slope, h).with_stages(Either::Loose),
-            Self::Tight(method) => method.trial(flow, t, x, slope, h).with_stages(Either::Tight),
-        }
+        self.sparse(flow, t, x, slope, (h, None))
     }
 
     #[inline]

@@ -1,7 +1,7 @@
 //! `Rodas5P`: L-stable, order 5(4), one Jacobian and ten linear solves a step, dense output of
 //! order 4.
 
-use super::system::{Dense, Room, System};
+use super::system::{Dense, Room, Sparse, System};
 use super::{Stepper, Trial, closing, moved, weighted};
 use crate::sparsity::Sparsity;
 use crate::state::State;
@@ -185,7 +185,7 @@ impl Stepper for Rodas5P {
                 System::Dense(some.first(n))
             }
             n => match sparsity {
-                Some(sparsity) => System::of(sparsity),
+                Some(sparsity) => System::Sparse(Sparse::of(sparsity)),
                 None => {
                     many = (vec![0.0; n * n], vec![0.0; n], vec![0; n]);
                     System::Dense(Dense { matrix: &mut many.0, work: &mut many.1, order: &mut many.2 })

@@ -18,8 +18,6 @@ pub(super) struct Scattered<'a> {
     pub(super) values: Vec<f64>,
     /// None of a matrix that is singular.
     factors: Option<Lu<usize, f64>>,
-    /// A right-hand side, and its solution.
-    work: Vec<f64>,
 }
 
 impl<'a> Scattered<'a> {
@@ -31,7 +29,7 @@ impl<'a> Scattered<'a> {
 
     /// Of zeros.
     pub(super) fn new(sparsity: &'a Sparsity) -> Self {
-        Self { sparsity, values: vec![0.0; sparsity.entries()], factors: None, work: vec![0.0; sparsity.len()] }
+        Self { sparsity, values: vec![0.0; sparsity.entries()], factors: None }
     }
 
     pub(super) fn factor(&mut self) {
@@ -40,16 +38,15 @@ impl<'a> Scattered<'a> {
             order.and_then(|order| Lu::try_new_with_symbolic(order.clone(), self.sparsity.with(&self.values)).ok());
     }
 
-    /// The solution for one right-hand side.
-    pub(super) fn solve(&mut self, right: impl Iterator<Item = f64>) -> &[f64] {
-        self.work.iter_mut().zip(right).for_each(|(work, right)| *work = right);
+    /// The solution for one right-hand side, in its place.
+    pub(super) fn solve(&self, mut work: Vec<f64>) -> Vec<f64> {
         match &self.factors {
             Some(factors) => {
-                let n = self.work.len();
-                factors.solve_in_place_with_conj(Conj::No, MatMut::from_column_major_slice_mut(&mut self.work, n, 1));
+                let n = work.len();
+                factors.solve_in_place_with_conj(Conj::No, MatMut::from_column_major_slice_mut(&mut work, n, 1));
             }
-            None => self.work.fill(f64::NAN),
+            None => work.fill(f64::NAN),
         }
-        &self.work
+        work
     }
 }

@@ -4,7 +4,7 @@
 use super::band::Band;
 #[cfg(feature = "sparse")]
 use super::scattered::Scattered;
-use crate::sparsity::Sparsity;
+use crate::sparsity::{Sparsity, listed};
 use crate::state::State;
 
 /// How far the differences for the Jacobian reach, relative to the scale of a coordinate: the cube
@@ -40,20 +40,7 @@ impl<const N: usize> Room<N> {
 /// Linear systems that share the matrix 1 - h γ J.
 pub(super) enum System<'a> {
     Dense(Dense<'a>),
-    Banded(Band, &'a Sparsity),
-    #[cfg(feature = "sparse")]
-    Scattered(Box<Scattered<'a>>),
-}
-
-impl<'a> System<'a> {
-    /// Of a pattern, which is solved as a band or, where that costs more, as it is.
-    pub(super) fn of(sparsity: &'a Sparsity) -> Self {
-        #[cfg(feature = "sparse")]
-        if Scattered::is_cheaper(sparsity) {
-            return Self::Scattered(Box::new(Scattered::new(sparsity)));
-        }
-        Self::Banded(Band::new(sparsity.len(), sparsity.band()), sparsity)
-    }
+    Sparse(Sparse<'a>),
 }
 
 impl System<'_> {
@@ -80,38 +67,67 @@ impl System<'_> {
                 system.fill(flow, t, x, slope, h * gamma, &sizes);
                 system.factor();
             }
+            Self::Sparse(system) => system.fill(flow, (t, x), slope, h * gamma, &sizes),
+        }
+    }
+
+    /// The solution for one right-hand side, of which a step asks for eleven. Where the dimension
+    /// is known at compile time the loops vanish; in a page it is size that counts.
+    #[cfg_attr(target_family = "wasm", inline(never))]
+    #[cfg_attr(not(target_family = "wasm"), inline(always))]
+    pub(super) fn solve<S: State>(&mut self, right: &S) -> S {
+        match self {
+            Self::Dense(system) => system.solve(right),
+            Self::Sparse(system) => system.solve(right),
+        }
+    }
+}
+
+/// A matrix whose entries have a pattern, solved as a band or, where that costs more, as it is.
+pub(super) enum Sparse<'a> {
+    Banded(Band, &'a Sparsity),
+    #[cfg(feature = "sparse")]
+    Scattered(Box<Scattered<'a>>),
+}
+
+impl<'a> Sparse<'a> {
+    pub(super) fn of(sparsity: &'a Sparsity) -> Self {
+        #[cfg(feature = "sparse")]
+        if Scattered::is_cheaper(sparsity) {
+            return Self::Scattered(Box::new(Scattered::new(sparsity)));
+        }
+        Self::Banded(Band::new(sparsity.len(), sparsity.band()), sparsity)
+    }
+
+    #[inline(never)]
+    fn fill<S: State>(&mut self, flow: &mut impl FnMut(f64, &S) -> S, at: (f64, &S), slope: &S, by: f64, sizes: &S) {
+        match self {
             Self::Banded(band, sparsity) => {
-                by_colours(sparsity, flow, (t, x), slope, &sizes, |(i, j), _, slope| {
-                    band.set(i, j, unit(i, j) - h * gamma * slope);
+                by_colours(sparsity, flow, at, slope, sizes, |(i, j), _, slope| {
+                    band.set(i, j, unit(i, j) - by * slope);
                 });
                 band.factor();
             }
             #[cfg(feature = "sparse")]
             Self::Scattered(matrix) => {
                 let sparsity = matrix.sparsity;
-                by_colours(sparsity, flow, (t, x), slope, &sizes, |(i, j), entry, slope| {
-                    matrix.values[entry] = unit(i, j) - h * gamma * slope;
+                by_colours(sparsity, flow, at, slope, sizes, |(i, j), entry, slope| {
+                    matrix.values[entry] = unit(i, j) - by * slope;
                 });
                 matrix.factor();
             }
         }
     }
 
-    /// The solution for one right-hand side.
-    #[inline(always)] // with a dimension known at compile time the loops vanish
-    pub(super) fn solve<S: State>(&mut self, right: &S) -> S {
-        match self {
-            Self::Dense(system) => system.solve(right),
-            Self::Banded(band, _) => {
-                let solution = band.solve((0..right.len()).map(|i| right.get(i)));
-                right.with(|i| solution[i])
-            }
+    #[inline(never)]
+    fn solve<S: State>(&self, right: &S) -> S {
+        let list = listed(right);
+        let solution = match self {
+            Self::Banded(band, _) => band.solve(list),
             #[cfg(feature = "sparse")]
-            Self::Scattered(matrix) => {
-                let solution = matrix.solve((0..right.len()).map(|i| right.get(i)));
-                right.with(|i| solution[i])
-            }
-        }
+            Self::Scattered(matrix) => matrix.solve(list),
+        };
+        right.with(|i| solution[i])
     }
 }
 

@@ -23,6 +23,11 @@ impl Column {
         self.unit.is_some_and(|unit| unit.dimension == Dimension::Time)
     }
 
+    /// Whether a word of its heading is of this kind.
+    fn says(&self, phrase: Phrase) -> bool {
+        words(self).iter().any(|word| phrase.is(word))
+    }
+
     /// Whether its heading is words of this kind and nothing else, beside its unit.
     pub(in crate::read) fn of_words(&self, phrase: Phrase) -> bool {
         let name = folded(self.heading.text.split(['(', '[']).next().unwrap_or_default());
@@ -67,6 +72,15 @@ impl Columns {
         self.only(one).zip(self.only(other)).filter(|(one, other)| one != other)
     }
 
+    /// Whether two columns have one unit, and names that differ in words of these kinds alone.
+    fn alike_but(&self, columns: [usize; 2], phrases: [Phrase; 2]) -> bool {
+        let [one, other] = columns.map(|n| &self.columns[n]);
+        let others = |c: &Column| -> Vec<String> {
+            words(c).into_iter().filter(|word| !phrases.iter().any(|phrase| phrase.is(word))).collect()
+        };
+        one.unit == other.unit && others(one) == others(other)
+    }
+
     /// A column is what it is called beside another one, whatever else its words say.
     pub(super) fn becomes(&mut self, index: usize, what: What, at: At) {
         let name = shown(&self.columns[index].heading.text);
@@ -80,9 +94,8 @@ impl Columns {
     fn gates(&mut self, region: &Region<'_>) {
         let named = region.aside.iter().any(|aside| names_gate(&aside.name)) || names_gate(region.view.grid.name);
         let gate = |c: &Column| c.timed() && (named || names_gate(&c.heading.text));
-        let down = |c: &Column| c.heading.has(Atom::Before) || words(c).iter().any(|word| Phrase::Down.is(word));
-        let rises = |c: &Column| words(c).iter().any(|word| Phrase::UpTo.is(word));
-        let up = |c: &Column| (c.heading.has(Atom::After) || rises(c)) && !down(c);
+        let down = |c: &Column| c.heading.has(Atom::Before) || c.says(Phrase::Down);
+        let up = |c: &Column| (c.heading.has(Atom::After) || c.says(Phrase::UpTo)) && !down(c);
         let Some((before, after)) = self.pair(|c| gate(c) && down(c), |c| gate(c) && up(c)) else { return };
         if self.columns[before].unit != self.columns[after].unit || self.values().count() > 2 {
             return;
@@ -99,18 +112,14 @@ impl Columns {
     fn in_and_out(&mut self) {
         let speed =
             |c: &Column| c.heading.has(Atom::Speed) || c.unit.is_some_and(|unit| unit.dimension == Dimension::Speed);
-        let has = |c: &Column, phrase: Phrase| speed(c) && words(c).iter().any(|word| phrase.is(word));
-        let Some((to, back)) = self.pair(|c| has(c, Phrase::Inwards), |c| has(c, Phrase::Outwards)) else { return };
-        let others = |n: usize| {
-            let words = words(&self.columns[n]).into_iter();
-            words.filter(|word| !Phrase::Inwards.is(word) && !Phrase::Outwards.is(word)).collect::<Vec<_>>()
-        };
+        let way = |phrase: Phrase| move |c: &Column| speed(c) && c.says(phrase);
+        let Some((to, back)) = self.pair(way(Phrase::Inwards), way(Phrase::Outwards)) else { return };
         let known = |n: usize| {
             let heading = &self.columns[n].heading;
             heading.unknown.iter().all(|word| Phrase::Inwards.is(&folded(word)) || Phrase::Outwards.is(&folded(word)))
         };
         let turns = self.columns[to].heading.turns() || self.columns[back].heading.turns();
-        let alike = others(to) == others(back) && self.columns[to].unit == self.columns[back].unit;
+        let alike = self.alike_but([to, back], [Phrase::Inwards, Phrase::Outwards]);
         if alike && known(to) && known(back) && !turns {
             self.becomes(to, What::Speed, At::Before);
             self.becomes(back, What::Speed, At::After);
@@ -120,15 +129,10 @@ impl Columns {
     /// `t_on (ms)` beside `t_off (ms)`, whose names differ in that word alone: each contact begins
     /// after the one before has ended, and is far shorter than what lies between.
     fn contacts(&mut self, region: &Region<'_>) {
-        let has = |c: &Column, phrase: Phrase| c.timed() && words(c).iter().any(|word| phrase.is(word));
-        let begins = |c: &Column| has(c, Phrase::Begins) && !has(c, Phrase::Ends);
-        let ends = |c: &Column| has(c, Phrase::Ends) && !has(c, Phrase::Begins);
+        let begins = |c: &Column| c.timed() && c.says(Phrase::Begins) && !c.says(Phrase::Ends);
+        let ends = |c: &Column| c.timed() && c.says(Phrase::Ends) && !c.says(Phrase::Begins);
         let Some((on, off)) = self.pair(begins, ends) else { return };
-        let bare = |n: usize| {
-            let words = words(&self.columns[n]).into_iter();
-            words.filter(|word| !Phrase::Begins.is(word) && !Phrase::Ends.is(word)).collect::<Vec<_>>()
-        };
-        if bare(on) != bare(off) || self.columns[on].unit != self.columns[off].unit {
+        if !self.alike_but([on, off], [Phrase::Begins, Phrase::Ends]) {
             return;
         }
         let times = |n: usize| region.rows.iter().map(|&row| region.view.number(row, n)).collect::<Option<Vec<f64>>>();
