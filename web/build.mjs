@@ -1,12 +1,14 @@
-// Puts the parts of the page together: node web/build.mjs COMPILED.wasm SALTUS.html [LANGUAGE]
+// Puts the parts of the page together: node web/build.mjs COMPILED.wasm PACK SALTUS.html [LANGUAGE]
 import { createHash } from "node:crypto";
 import { readFileSync, readdirSync, statSync, writeFileSync } from "node:fs";
 import { basename, join } from "node:path";
 import { packed } from "./pack.mjs";
 
 const here = import.meta.dirname;
-const [wasm, page, language = "en"] = process.argv.slice(2);
+const [wasm, pack, page, language = "en"] = process.argv.slice(2);
 const read = (...path) => readFileSync(join(here, ...path), "utf8");
+/// A script without its remarks, which a page's reader has no use for.
+const bare = (script) => script.replace(/^ *\/\/.*\n/gm, "");
 const words = JSON.parse(read("words", `${language}.json`));
 
 const OWN = `# A ball of your own: move a slider, or write here. docs/use/scenes.md lists the keys.
@@ -56,7 +58,7 @@ function joined(entry) {
     if (done.has(module)) return;
     done.add(module);
     const exported = [];
-    const body = read("page", `${module}.js`)
+    const body = bare(read("page", `${module}.js`))
       .replace(/^import (\{.*\}) from "(.*)";$/gm, (_, names, from) => {
         add(name(from));
         return `const ${names} = $${name(from)};`;
@@ -78,7 +80,7 @@ const hash = (text) => `'sha256-${createHash("sha256").update(text).digest("base
 const escaped = (text) => text.replaceAll("&", "&amp;").replaceAll("<", "&lt;").replaceAll('"', "&quot;");
 
 const style = read("page/style.css");
-const begin = whole(`const WORKER = ${JSON.stringify(read("page/worker.js"))};\n${read("page/begin.js")}`);
+const begin = whole(`const WORKER = ${JSON.stringify(bare(read("page/worker.js")))};\n${bare(read("page/begin.js"))}`);
 const script = joined("main");
 // Nothing is loaded from anywhere, nothing in a table runs, and nothing is sent.
 const policy = [
@@ -90,7 +92,7 @@ const policy = [
   "base-uri 'none'",
   "form-action 'none'",
 ].join("; ");
-const filled = { POLICY: policy, STYLE: style, BEGIN: begin, SCRIPT: script, WASM: packed(readFileSync(wasm)) };
+const filled = { POLICY: policy, STYLE: style, BEGIN: begin, SCRIPT: script, WASM: packed(readFileSync(wasm), pack) };
 /// A word of the interface, which every language has to have.
 function word(key) {
   if (!(key in words)) throw new Error(`words/${language}.json has no "${key}"`);

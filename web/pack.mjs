@@ -1,6 +1,6 @@
 // Compiled bytes as text in a page: without notes and names for tools, packed, and seven bits to a
 // character.
-import { gzipSync } from "node:zlib";
+import { execFileSync } from "node:child_process";
 
 /// Sections of a WebAssembly module that hold no part of the program have the number 0, that of the
 /// names by which it is called 7.
@@ -83,4 +83,7 @@ function text(bytes) {
   return Buffer.from(codes.buffer).toString("utf16le");
 }
 
-export const packed = (module) => text(gzipSync(bare(module), { level: 9 }));
+/// A program that packs its input into its output.
+const gzip = (bytes, pack) => execFileSync(pack, { input: bytes, maxBuffer: Infinity });
+
+export const packed = (module, pack) => text(gzip(bare(module), pack));
