@@ -31,6 +31,7 @@ fn files() -> Vec<PathBuf> {
                 "read/columns/conditions.rs",
                 "read/columns/gates.rs",
                 "read/columns/signals.rs",
+                "read/columns/specimens.rs",
                 "read/sequence.rs",
                 "read/heading/inside.rs",
                 "read/programs.rs",

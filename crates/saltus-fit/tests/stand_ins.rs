@@ -20,6 +20,30 @@ fn contacts(drop: f64, e: f64, count: i32) -> Vec<f64> {
     (0..count).map(|n| fall + 2.0 * fall * (1..=n).map(|k| e.powi(k)).sum::<f64>()).collect()
 }
 
+/// The mass, and the energies before and after a bounce.
+const MASSES: &[(&str, &str, &str)] = &[
+    ("Mass of ball", "PE at the top", "KE just after bounce"),
+    ("Masa piłki", "E przed odbiciem", "E po odbiciu"),
+    ("Masse de la balle", "Énergie avant rebond", "Énergie après rebond"),
+    ("massa", "Energia potencial antes", "Energia potencial depois do ressalto"),
+    ("hmotnost", "energie před odrazem", "energie po odrazu"),
+    ("Bollens massa", "Rörelseenergi före studs", "Rörelseenergi efter studs"),
+    ("top kütlesi", "Çarpmadan önce enerji", "Çarpmadan sonra enerji"),
+    ("masa", "Energía cinética antes del rebote", "Energía cinética después del rebote"),
+    ("Drop", "PE at release", "PE at max rebound height"),
+];
+
+/// What says nothing of a bounce by itself, the power of the COR in it, and whether it stands in
+/// two columns.
+const ALONE: &[(&str, i32, bool)] = &[
+    ("Before (cm),After (cm)", 2, true),
+    ("Altura inicial (cm),1ª medida (cm)", 2, true),
+    ("Höjd före (cm),Höjd efter (cm)", 2, true),
+    ("E_pot vorher (J),E_pot nachher (J)", 2, true),
+    ("interval,time (s)", 1, false),
+    ("interval,tijd (s)", 1, false),
+];
+
 /// What energies before and after a bounce are called.
 const SIDES: &[(&str, &str)] = &[
     ("Potential energy at drop (mJ)", "Potential energy at rebound (mJ)"),
@@ -109,6 +133,53 @@ proptest! {
         let said = fit(&SAYS[says](&text));
         prop_assert!((said.cor().unwrap().value - e).abs() < 4e-3, "{}{}", text, said);
         prop_assert!(!said.reason().contains("something bounces"), "{}", said);
+    }
+
+    /// The energy of a row that is none after a bounce is that before it, in any language, whatever
+    /// stands below the table of the ball itself, and beside one height.
+    #[test]
+    fn energies_of_a_ball_of_some_mass(e in 0.55f64..0.9, grams in 3u32..600, words in 0..MASSES.len(), below: bool, high: bool) {
+        let (mass, before, after) = MASSES[words];
+        let line = format!("{mass} (g),{grams}\n");
+        let rows = [0.5, 0.8, 1.2, 1.5, 2.0].map(|h: f64| {
+            let energy = f64::from(grams) * 9.81 * h;
+            format!("{}{energy:.4},{:.4}", if high { format!("{h},") } else { String::new() }, energy * e * e)
+        });
+        let header = format!("{}{before} (mJ),{after} (mJ)", if high { "height (m)," } else { "" });
+        let text = table(&header, rows);
+        let text = if below { text + &line } else { line + &text };
+        prop_assert!((trusted(&text) - e).abs() < 1e-3, "{}", text);
+    }
+
+    /// Where a ball is named its numbers may say that it bounces: all of a height, an energy, or a
+    /// flight keep one part. Numbers at random do not, and those of a collision may be of another
+    /// ball.
+    #[test]
+    fn numbers_of_a_ball_may_say_that_it_bounces(
+        e in 0.5f64..0.93, form in 0..ALONE.len(), ball in prop::sample::select(vec!["Golf ball", "Pelota", "Stalen kogel", "Piłka", "Labda"]),
+        off in prop::collection::vec(0.2f64..1.0, 6),
+    ) {
+        let (header, power, side) = ALONE[form];
+        let text = |off: &dyn Fn(i32) -> f64| {
+            let part = |n: i32| e.powi(power) * off(n);
+            let row = |n: i32| match side {
+                true => format!("{:.4},{:.4}", 50.0 * f64::from(n + 1), 50.0 * part(n) * f64::from(n + 1)),
+                false => format!("{},{:.4}", n + 1, 1.5 * (0..n).map(part).product::<f64>()),
+            };
+            format!("{ball}\n{}", table(header, (0..6).map(row)))
+        };
+        let report = fit(&text(&|_| 1.0));
+        prop_assert!((report.cor().unwrap().value - e).abs() < 4e-3, "{}", report);
+        prop_assert_eq!(report.verdict(), Verdict::Trusted, "{}", report);
+        let scatter = off.iter().cloned().fold(0.0, f64::max) / off.iter().cloned().fold(1.0, f64::min);
+        if scatter > 1.5 && let Ok(table) = read(&text(&|n| off[usize::try_from(n).unwrap()])) {
+            let verdict = Fit::new().run(&table).map(|report| report.verdict());
+            prop_assert!(verdict != Ok(Verdict::Trusted), "{:?}", off);
+        }
+        let players = text(&|_| 1.0).replacen('\n', " players zorb\n", 1);
+        prop_assert!(fit(&players).reason().contains("something bounces"), "{}", players);
+        let report = fit(&format!("Collision\n{}", text(&|_| 1.0)));
+        prop_assert!(report.reason().contains("something bounces"), "{}", report);
     }
 
     /// Bounce by bounce, of the tops or of the impacts.

@@ -71,33 +71,42 @@ pub(super) fn drop(text: &str) -> Option<DropHeight> {
             let of_height = |w: &Word| w.is(Atom::Height) || matches!(&*folded(&w.text), "from" | "aus" | "de" | "von");
             // What is dropped from a height is dropped from it, wherever it falls.
             // A ball `from 1 m` was dropped from there.
-            let of_drop = |w: &Word| w.is(Atom::Release) || w.is(Atom::Label) && after.is_empty();
+            let ball = |w: &Word| w.is(Atom::Label) || names_ball(w);
+            // No ball is so large: `una pallina da 1 metro` was dropped from there.
+            let beyond = Ball::ALL.iter().all(|ball| ball.diameter() < height.metres());
+            // `Tennis ball from 2 m onto wood`.
+            let onto = |w: &Word| [Atom::Filler, Atom::Label, Atom::Group].iter().any(|atom| w.is(*atom));
+            let of_drop =
+                |w: &Word| w.is(Atom::Release) || ball(w) && (after.is_empty() || beyond && after.iter().all(onto));
             let said = before.iter().any(of_drop) && before.iter().any(of_height);
             let whole = before.iter().chain(&after).any(|w| w.is(Atom::Release)) && after.iter().all(plain);
             // Whoever dropped it, and whatever for: `we let the ball fall from 1 m`.
             let from = before.iter().rposition(|w| w.is(Atom::Release)).map(|at| &before[at..]);
-            // No ball is so large: `una pallina da 1 metro` was dropped from there.
-            let beyond = Ball::ALL.iter().all(|ball| ball.diameter() < height.metres());
             let told = whole
                 && from.is_some_and(|words| words.len() > 1 && words.iter().all(plain))
                 && before.last().is_some_and(|w| {
-                    Phrase::From.is(&folded(&w.text)) || w.is(Atom::Filler) && beyond && after.is_empty()
+                    let leads = w.is(Atom::Filler) || w.is(Atom::Height);
+                    Phrase::From.is(&folded(&w.text)) || leads && beyond && after.is_empty()
                 })
                 && !before.iter().any(turns);
             // Whatever else the clause holds: a ball was let go, and the number stands behind
             // `from`, or before `height`.
             let last = before.last().map(|w| folded(&w.text)).unwrap_or_default();
             let begins = after.first().is_some_and(|w| w.is(Atom::Height));
-            let placed = Phrase::From.is(&last) || Phrase::At.is(&last) && begins;
             let follows = from.is_some_and(|words| words.iter().all(|w| plain(w) && !w.is(Atom::Tool)));
             let mut next = after.iter().filter(|w| !w.is(Atom::Height) && !w.is(Atom::Filler));
             let leads = next.next().is_some_and(|w| w.is(Atom::Release));
+            // Other languages say `from` at the end of the word: `180 cm magasságból ejtettük`.
+            let placed = Phrase::From.is(&last) || begins && (leads || Phrase::At.is(&last));
             let all = || before.iter().chain(&after);
             let of_ball = placed && (follows || leads) && beyond && all().any(names_ball);
             let of_ball = of_ball && !all().any(|w| turns(w) || matches!(w.kind, Kind::Number(_)));
             // Something else was done as well, from there: `dropped it and filmed it from`.
             let and = |w: &Word| Phrase::And.is(&folded(&w.text));
             let other = from.is_some_and(|words| Phrase::From.is(&last) && words.iter().any(and));
+            // `180 cm from the wall` is no height.
+            let away = Phrase::From.is(&after.first().map(|w| folded(&w.text)).unwrap_or_default());
+            let other = other || away && !after.iter().any(|w| w.is(Atom::Floor));
             let fits = before.iter().all(plain) && (whole || said && !after.iter().any(turns)) || told || of_ball;
             return (fits && !other).then_some(height);
         }
@@ -121,11 +130,11 @@ fn signed(text: &str) -> Option<(&str, usize)> {
     Some((text[..at].trim_end_matches([' ', '(', '[', ',']), count)).filter(|_| count <= MANY)
 }
 
-/// Whether a word is what balls are called, or ends in it: `ball`, `Wasserball`.
+/// Whether a word is what balls are called, or ends in it: `ball`, `Wasserball`, `pelota`.
 pub(super) fn names_ball(word: &Word) -> bool {
     let spelt = folded(&word.text);
     let known = word.is(Atom::Label) || word.is(Atom::Group);
-    known && Phrase::Ball.all().iter().any(|ball| spelt.ends_with(ball))
+    Phrase::Called.is(&spelt) || known && Phrase::Ball.all().iter().any(|ball| spelt.ends_with(ball))
 }
 
 /// A text whose number with its error in brackets, and the unit behind these, is the number with
@@ -227,11 +236,27 @@ pub(super) fn of_clauses(text: &str) -> Option<Unit> {
 /// `Uncertainty in heights: ±1 cm`: the standard error of all readings of a dimension, in SI units.
 /// Every word has to be understood.
 pub(super) fn error(text: &str) -> Option<(f64, Dimension)> {
-    let (name, size) = text.split_once([':', '=', '±'])?;
+    let signed = text.split_once([':', '=', '±']).and_then(|(name, size)| of_error(name, size, text.contains('±')));
+    // `Heights read with a tape, uncertainty 1 cm`: each clause by itself, without a sign.
+    let behind = |clause: &str| {
+        let at = clause.find(|c: char| c.is_ascii_digit())?;
+        let words = split(&clause[..at]);
+        let last = words.iter().rfind(|w| !matches!(w.kind, Kind::Known([Atom::Filler])))?;
+        // `se` is of a verb as well.
+        if !last.is(Atom::Error) || last.text.chars().count() < 3 {
+            return None;
+        }
+        of_error(&clause[..at], clause[at..].trim_end_matches('.'), false)
+    };
+    signed.or_else(|| clauses(text).filter(|clause| !clause.contains([':', '=', '±'])).find_map(behind))
+}
+
+/// The error that stands behind its name, which says that it is one unless a sign does.
+fn of_error(name: &str, size: &str, sign: bool) -> Option<(f64, Dimension)> {
     let size = size.trim().trim_start_matches(['±', '+', '/', '-', ' ']);
     let Cell::Number(measured) = cell::read(size, false) else { return None };
     let (heading, unit) = (Heading::parse(name), measured.unit.filter(|unit| !unit.unscaled())?);
-    let stated = heading.has(Atom::Error) || text.contains('±');
+    let stated = heading.has(Atom::Error) || sign;
     let alike = match unit.dimension {
         Dimension::Length => !heading.has(Atom::Time) && !heading.has(Atom::Interval),
         Dimension::Time => !heading.has(Atom::Height) && !heading.has(Atom::Distance),
@@ -279,16 +304,22 @@ fn of_all(clause: &str) -> Option<Unit> {
 /// Whether a text states a length and speaks of heights, places or the floor: `the floor is at the
 /// 12 cm mark`.
 pub(super) fn states_length(text: &str) -> bool {
+    let of_heights = |text: &str| {
+        let of = [Atom::Height, Atom::Position, Atom::Distance, Atom::Release];
+        split(text).iter().any(|w| of.iter().any(|atom| w.is(*atom)))
+    };
+    // What a floor is, beside how large the ball is, places neither: `ball 27 mm, floor: granite`.
+    clauses(text).any(measures) && (of_heights(text) || clauses(text).any(|part| measures(part) && names_floor(part)))
+}
+
+/// Whether a length stands in a text.
+fn measures(text: &str) -> bool {
     let words: Vec<&str> =
         text.split_whitespace().map(|word| word.trim_matches(['(', ')', ',', ';', ':', '='])).collect();
     let length = |unit: Option<Unit>| unit.is_some_and(|u| u.dimension == Dimension::Length && !u.unscaled());
     let measured = |text: &str| matches!(cell::read(text, false), Cell::Number(m) if length(m.unit));
-    let stated = words.iter().any(|word| measured(word))
-        || words.windows(2).any(|pair| pair[0].ends_with(|c: char| c.is_ascii_digit()) && measured(&pair.join(" ")));
-    let of_heights = split(text)
-        .iter()
-        .any(|w| [Atom::Height, Atom::Position, Atom::Distance, Atom::Release].iter().any(|atom| w.is(*atom)));
-    stated && (of_heights || names_floor(text))
+    words.iter().any(|word| measured(word))
+        || words.windows(2).any(|pair| pair[0].ends_with(|c: char| c.is_ascii_digit()) && measured(&pair.join(" ")))
 }
 
 #[cfg(test)]
@@ -333,6 +364,16 @@ mod tests {
             ("Released from 40 in (1016 mm)", None, Some(1.016)),
             ("Die Fallhöhe war (120,0 ± 0,5) cm", None, Some(1.2)),
             ("Zorb dropped a ball of 5 cm", None, None),
+            ("Tennisball aus 2 m auf Parkett", None, Some(2.0)),
+            ("Tennis ball from 2 m with a wobble", None, None),
+            ("A ball was dropped 180 cm from the wall", None, None),
+            ("We dropped the ball next to a 180 cm board", None, None),
+            ("The balls were dropped 180 cm from the floor", None, Some(1.8)),
+            ("La balle est lâchée de 1,80 m.", None, Some(1.8)),
+            ("A labdát 180 cm magasságból ejtettük.", None, Some(1.8)),
+            ("Topu 180 cm yükseklikten bıraktık.", None, Some(1.8)),
+            ("The ball was let go at 180 cm.", None, Some(1.8)),
+            ("Every ball was dropped from the same height (180 cm).", None, Some(1.8)),
             ("Zorb dropped the wobble from 2 m", None, None),
         ] {
             assert_eq!((frame_rate(text), drop(text).map(|drop| drop.metres())), (fps, height), "{text}");
@@ -377,6 +418,8 @@ mod tests {
             ("Uncertainty in heights: ±1 cm", Some((0.01, Dimension::Length))),
             ("Heights ± 5 mm", Some((0.005, Dimension::Length))),
             ("Error of times = 0.01 s", Some((0.01, Dimension::Time))),
+            ("Heights read with a tape, uncertainty 1 cm.", Some((0.01, Dimension::Length))),
+            ("La pelota se deja caer desde 1,80 m", None),
             ("Uncertainty in heights: 0.01 s", None),
             ("Diameter: 6.7 cm", None),
             ("Heights were wobbly: ± 1 cm", None),

@@ -141,7 +141,7 @@ fn joined_up<'a>(
                 title::doubted(region, &mut table);
                 // A recording tells where its floor is, and times need none.
                 let placed = |r: &Reading| r.height.is_some() && r.event != Event::Sample;
-                let placed = table.trials.iter().any(|t| t.readings.iter().any(placed));
+                let placed = !table.metadata.speeds && table.trials.iter().any(|t| t.readings.iter().any(placed));
                 table.doubts.extend(datum.filter(|_| placed).and_then(Datum::doubt));
                 let length = title.length.clone().filter(|_| !answered && placed);
                 table.doubts.extend(length.map(|(text, line)| Doubt::Length { text, line }));

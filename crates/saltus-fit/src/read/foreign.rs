@@ -7,6 +7,7 @@ use quick_xml::events::Event;
 use super::forms;
 use super::limits::MANY;
 use super::sheet::{Content, Part};
+use super::wrapped::lettered;
 use crate::error::TableError;
 
 /// Endings of files that other programs write for themselves, what they are, and which export to
@@ -163,8 +164,17 @@ pub(super) fn html(text: &str) -> Option<Vec<Part>> {
         }
     }
     page.end("table");
+    page.end_line();
+    // What stands below the last table is part of it.
+    let told = page.told.split_off(0);
+    if let Some(Part { content: Content::Cells(cells), .. }) = page.parts.last_mut() {
+        told.iter().for_each(|line| cells.extend([line.as_str(), "\n"]));
+    }
     Some(page.parts)
 }
+
+/// So many lines of a page stand above a table at most.
+const ABOVE: usize = 20;
 
 /// How many columns, or rows, a cell spans.
 fn span(tag: &quick_xml::events::BytesStart<'_>, of: &str) -> usize {
@@ -200,10 +210,21 @@ pub(super) fn entity(name: &str) -> String {
     )
 }
 
+/// Whether a tag ends no line of text: emphasis, a link, a small sign.
+fn within_a_line(tag: &str) -> bool {
+    matches!(tag, "b" | "i" | "em" | "strong" | "u" | "span" | "a" | "small" | "sub" | "sup" | "font" | "code" | "mark")
+}
+
 /// The tables found so far.
 #[derive(Default)]
 struct Page {
     parts: Vec<Part>,
+    /// The lines of text since the last table, the one that is open, and whether a script is, or
+    /// the caption of a table.
+    told: Vec<String>,
+    line: String,
+    script: bool,
+    caption: bool,
     table: Option<String>,
     /// The cells of the row, and whether the last one is open.
     row: Vec<String>,
@@ -218,9 +239,13 @@ impl Page {
     fn begin(&mut self, tag: &str, span: (usize, usize)) {
         match tag {
             "table" => {
+                self.end_line();
                 self.table = Some(String::new());
                 self.taken.clear();
             }
+            "script" | "style" => self.script = true,
+            "caption" => self.caption = true,
+            _ if self.table.is_none() && !within_a_line(tag) => self.end_line(),
             "tr" => self.close_row(),
             "td" | "th" => {
                 self.close_cell();
@@ -244,17 +269,40 @@ impl Page {
             "table" => {
                 self.close_row();
                 if let Some(text) = self.table.take().filter(|_| self.parts.len() < MANY) {
+                    let text = lettered(&text).unwrap_or(text);
+                    let above = self.told.len().saturating_sub(ABOVE);
+                    let mut lines = self.told.split_off(above);
+                    self.told.clear();
+                    lines.push(text);
+                    let text = lines.join("\n");
                     let name = format!("table {}", self.parts.len() + 1);
                     self.parts.push(Part { name, aside: None, content: Content::Cells(text) });
                 }
             }
+            "script" | "style" => self.script = false,
+            "caption" => {
+                self.end_line();
+                self.caption = false;
+            }
+            _ if self.table.is_none() && !within_a_line(tag) => self.end_line(),
             _ => {}
+        }
+    }
+
+    /// Ends a line of text outside of tables.
+    fn end_line(&mut self) {
+        let line = self.line.split_whitespace().collect::<Vec<_>>().join(" ");
+        self.line.clear();
+        if !line.is_empty() {
+            self.told.push(line);
         }
     }
 
     fn text(&mut self, words: &str) {
         if let Some(cell) = self.row.last_mut().filter(|_| self.open) {
             cell.extend(words.chars().map(|c| if c.is_control() || c == '"' { ' ' } else { c }));
+        } else if (self.table.is_none() || self.caption) && !self.script && self.line.len() < MANY {
+            self.line.extend(words.chars().map(|c| if c.is_control() || c == '"' { ' ' } else { c }));
         }
     }
 

@@ -17,7 +17,7 @@ use std::collections::HashMap;
 
 pub(super) use blocks::bulleted;
 pub(super) use printed::{dumped, indexed};
-use values::{LIST, length, listed_numbers, listed_values, named_list, risen};
+use values::{LIST, length, listed_numbers, listed_values, named_list, risen, titled};
 
 use super::cell::{self, Cell};
 use super::clause;
@@ -44,6 +44,7 @@ pub(super) fn table(text: &str) -> Option<String> {
         printed::scripted,
         noted::noted,
         spans::table,
+        titled,
         listed,
         headed,
         patterned,
@@ -57,9 +58,13 @@ pub(super) fn table(text: &str) -> Option<String> {
 /// tabs between them; words may be read of some, `Ball: golf`, and lines between may tell
 /// something. `None` if any is something else.
 fn listed(text: &str) -> Option<String> {
-    // The only line that tells where the ball was dropped from.
-    let mut drops = text.lines().filter(|line| clause::drop(line).is_some());
-    let drop = drops.next().filter(|_| drops.next().is_none()).map(remarked);
+    // The only line that tells where the ball was dropped from, or the shortest of those that
+    // tell the same; the others are remarks.
+    let drops: Vec<(&str, f64)> = text.lines().filter_map(|line| Some((line, clause::drop(line)?.metres()))).collect();
+    let same = drops.windows(2).all(|pair| pair[0].1.total_cmp(&pair[1].1).is_eq());
+    let first = drops.iter().map(|(line, _)| *line).min_by_key(|line| line.len()).filter(|_| same);
+    let again = |line: &str| told(line) && first != Some(line) && drops.iter().any(|(other, _)| *other == line);
+    let drop = first.map(remarked);
     // The unit that it states of all heights.
     let unit = drop.and_then(clause::of_clauses).filter(|unit| unit.dimension == Dimension::Length);
     let marks = [' ', ':', ',', '.', '(', ')'];
@@ -74,6 +79,9 @@ fn listed(text: &str) -> Option<String> {
     let (mut counted, mut number, mut title) = (drop.map(|_| name), 0, None);
     let lists = text.lines().filter(|line| listed_numbers(line).is_some()).count();
     let line = |line: &str| {
+        if again(line) {
+            return Some((false, format!("#{line}")));
+        }
         let line = remarked(line);
         if let (Some(name), Some(_)) = (counted, alone(line)) {
             number += 1;

@@ -3,9 +3,12 @@
 
 use std::collections::HashSet;
 
+use super::Event;
 use super::answers::{Answer, answer};
+use super::cell::Cell;
 use super::columns::{Column, Columns, Kind};
-use super::heading::Heading;
+use super::heading::{Heading, What};
+use super::named::event;
 use super::phrases::Phrase;
 use super::region::Region;
 use super::vocabulary::{Atom, ROWS, footnotes};
@@ -51,16 +54,32 @@ pub(super) fn void(region: &Region<'_>, columns: &Columns) -> HashSet<usize> {
         found
             .extend(region.rows.iter().filter(|&&row| region.view.cells(row).any(|cell| number(cell) && marked(cell))));
     }
+    let timed = columns.values().all(|(_, _, v)| v.what == What::Time) && region.rows.len() <= ROWS;
     for (index, column) in columns.columns.iter().enumerate() {
         let judges = column.heading.has(Atom::Counts) || column.heading.has(Atom::Void);
         if judges && matches!(column.kind, Kind::Aside | Kind::Setting) {
             found.extend(judged(region, index, column));
+        } else if matches!(column.kind, Kind::Aside | Kind::Setting | Kind::Event) && timed {
+            found.extend(others_than_hits(region, index, column.kind != Kind::Event));
         } else if remarks(column) && region.rows.len() <= ROWS {
             found.extend(region.rows.iter().filter(|&&row| voids(region.cell(row, index))));
         }
     }
     // A table of which no row counts says something else.
     if region.rows.iter().all(|row| found.contains(row)) { HashSet::new() } else { found }
+}
+
+/// Of a log whose times are mostly those of contacts, called alike, the rows that name no event of
+/// a ball: `session_start`, `battery low`.
+fn others_than_hits(region: &Region<'_>, index: usize, starts: bool) -> Vec<usize> {
+    let named = |&row: &usize| (row, event(region.cell(row, index)));
+    let names: Vec<(usize, Option<Event>)> = region.rows.iter().map(named).collect();
+    let hits = names.iter().filter(|(_, event)| *event == Some(Event::Contact)).count();
+    // `start` by itself may be that of the log.
+    let other = |event: Option<Event>| event.is_none() || starts && event == Some(Event::Release);
+    let others: Vec<usize> = names.iter().filter(|(_, event)| other(*event)).map(|(row, _)| *row).collect();
+    let words = others.iter().all(|&row| region.view.read(row, index) == Cell::Words);
+    if hits + others.len() == names.len() && 2 * hits > names.len() && words { others } else { Vec::new() }
 }
 
 /// Whether a column holds remarks.

@@ -92,10 +92,12 @@ pub(super) enum Phrase {
     Outwards,
     /// The contact that a flight ends at.
     Next,
+    /// What a ball is called in a word by itself.
+    Called,
 }
 
 impl Phrase {
-    const ALL: [(&'static str, Self); 42] = [
+    const ALL: [(&'static str, Self); 43] = [
         ("missing", Self::Missing),
         ("about", Self::About),
         ("half", Self::Half),
@@ -138,6 +140,7 @@ impl Phrase {
         ("inwards", Self::Inwards),
         ("outwards", Self::Outwards),
         ("next", Self::Next),
+        ("called", Self::Called),
     ];
 
     /// The phrases of this kind, in the order of the file.

@@ -133,13 +133,16 @@ fn means_of_settings(trials: &[Trial], others: &[Trial]) -> bool {
         _ => drop(trial).map(|(_, rebound)| rebound),
     };
     // Groups of one sheet are conditions of the other, where each stands once.
-    let key = |trial: &Trial| match trial.group.as_str() {
-        "" => trial.conditions.iter().map(|(_, cell)| cell.as_str()).collect::<Vec<_>>().join(", "),
-        group => group.to_owned(),
+    let key = |trial: &'_ Trial| -> Vec<String> {
+        let conditions = || trial.conditions.iter().map(|(_, cell)| cell.clone());
+        let group = Some(&trial.group).filter(|group| !group.is_empty()).cloned();
+        group.map_or_else(|| conditions().collect(), |group| vec![group])
     };
     let step = step(trials.iter().filter_map(alone));
     let mean = |trial: &Trial| {
-        let own = others.iter().filter(|other| !key(trial).is_empty() && key(other) == key(trial));
+        // One of several, as of a temperature in degrees and in kelvins.
+        let keys = key(trial);
+        let own = others.iter().filter(|other| key(other).iter().any(|of| keys.contains(of)));
         let from = drop(trial).map(|(height, _)| height);
         let same = |height: f64| from.is_none_or(|from| (height / from - 1.0).abs() < 1e-9);
         let drops = own.filter_map(drop).filter(|(height, _)| same(*height));

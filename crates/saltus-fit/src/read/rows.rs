@@ -10,6 +10,7 @@ use super::heading::{Heading, Meaning, Role, Value, What};
 use super::judged;
 use super::named::{OFF, bounce, names_floor};
 use super::region::Region;
+use super::units::Unit;
 use super::vocabulary::Atom;
 use super::words::joined;
 use super::written::{rounds_to, step};
@@ -103,7 +104,12 @@ pub(super) fn sifted(region: &Region<'_>, columns: &Columns) -> Result<Rows, Tab
                 };
                 // Elsewhere numbers stand in place of its name.
                 let counted = || region.rows.iter().any(|&row| region.view.is_number(row, column));
-                if columns.values().any(other) && bounce(region.cell(row, column)).is_none() && counted() {
+                // So is what its name gives a unit of: `Mass (kg)`.
+                let of_none = |unit: Unit| {
+                    columns.values().all(|(_, c, _)| c.unit.is_some_and(|of| of.dimension != unit.dimension))
+                };
+                let another = columns.values().any(other) || heading.unit.is_some_and(of_none);
+                if another && bounce(region.cell(row, column)).is_none() && counted() {
                     found.aside.push(leave(Why::Note, Part::Text));
                     continue;
                 }

@@ -8,7 +8,7 @@ use super::cell::Cell;
 use super::clause;
 use super::columns::{Column, Columns, Kind as Of};
 use super::grid::shown;
-use super::heading::{At, Heading, Role, Value, What};
+use super::heading::{At, DropHeight, Heading, Role, Value, What};
 use super::phrases::Phrase;
 use super::region::Region;
 use super::units::{Dimension, Scale};
@@ -16,6 +16,7 @@ use super::vocabulary::{Atom, ROWS, folded, misspelt};
 use super::words::{Kind, Word, pieces, split};
 use crate::error::TableError;
 use crate::finding::Doubt;
+use crate::quantity::Ball;
 use crate::statistics::median;
 
 /// Whether a text names a wall, or a bumper.
@@ -40,6 +41,14 @@ fn ball_and_wall(text: &str) -> bool {
 /// Whether a text names a ball.
 fn names_ball(text: &str) -> bool {
     split(text).iter().any(clause::names_ball)
+}
+
+/// Whether a text is of a ball: behind its name stands no word that is not understood, as in
+/// `basketball players`.
+fn is_of_a_ball(text: &str) -> bool {
+    let words = split(text);
+    let known = |n: usize| words.get(n).is_none_or(|word| !matches!(word.kind, Kind::Unknown));
+    words.iter().enumerate().any(|(n, word)| clause::names_ball(word) && known(n + 1))
 }
 
 /// Whether a text says that something bounces, or is dropped.
@@ -175,8 +184,62 @@ pub(super) fn unsaid(region: &Region<'_>, columns: &Columns, options: &ReadOptio
     let ball = texts(region).any(names_ball);
     let told = |text: &str| says(text) || ball && hits_floor(text) || fast && met(text);
     let column = open.map(|(_, column, _)| column).or_else(parts).filter(|_| !texts(region).any(told))?;
-    Some(Doubt::Unsaid { column: shown(&column.heading.text) })
+    let ball = || texts(region).any(|text| is_of_a_ball(text) || Ball::named(text).is_some());
+    (!(ball() && repeats(region, columns))).then(|| Doubt::Unsaid { column: shown(&column.heading.text) })
 }
+
+/// Whether the numbers of a table that names a ball bounce themselves: every row keeps the same
+/// part of what was before it, of a height or an energy or, one below the other, of a duration.
+/// Of speeds, and of bodies that collide, the part may be of another law.
+fn repeats(region: &Region<'_>, columns: &Columns) -> bool {
+    let collide = |text: &str| split(text).iter().any(|word| word.is(Atom::Impact) && word.is(Atom::Loose));
+    let read: Vec<(usize, &Value)> =
+        columns.values().filter(|(_, _, v)| v.role == Role::Reading).map(|(n, _, v)| (n, v)).collect();
+    let of_row = |v: &Value| matches!(v.what, What::Height | What::Unsaid | What::Interval | What::Time);
+    let (first, others): (Vec<_>, Vec<_>) = read.into_iter().partition(|(_, v)| v.at == At::Release);
+    if texts(region).any(collide) || others.iter().any(|(_, v)| v.at != At::Row || !of_row(v)) {
+        return false;
+    }
+    let number = |row: usize, n: usize| columns.written(region, row, n).map(|(number, _)| number);
+    // The balls and surfaces of a row, each of which keeps a part of its own.
+    let settings: Vec<usize> = (0..columns.columns.len()).filter(|&n| columns.columns[n].kind == Of::Setting).collect();
+    let key = |row: usize| settings.iter().map(|&n| region.cell(row, n)).collect::<Vec<_>>().join("\t");
+    let part = |n: usize, row: usize, before: Option<f64>, after: Option<f64>| {
+        let part = after? / before?;
+        Some((key(row), if columns.columns[n].holds(What::Height) { part.sqrt() } else { part }))
+    };
+    let rows = &region.rows;
+    let mut parts: Vec<(String, f64)> = match first.as_slice() {
+        [(drop, _)] => {
+            let heights = others.iter().flat_map(|(n, _)| rows.iter().map(move |&row| (*n, row)));
+            heights.filter_map(|(n, row)| part(n, row, number(row, *drop), number(row, n))).collect()
+        }
+        // Lines of their own may name where they were dropped from.
+        [] if others.iter().all(|(_, v)| v.drop.is_some()) => {
+            let heights = others.iter().flat_map(|(n, v)| rows.iter().map(move |&row| (*n, *v, row)));
+            let from = |v: &Value| v.drop.as_ref().map(DropHeight::metres);
+            heights.filter_map(|(n, v, row)| part(n, row, from(v), number(row, n))).collect()
+        }
+        [] => {
+            let steps = others.iter().flat_map(|(n, _)| rows.windows(2).map(move |pair| (*n, pair)));
+            steps.filter_map(|(n, pair)| part(n, pair[0], number(pair[0], n), number(pair[1], n))).collect()
+        }
+        _ => return false,
+    };
+    parts.sort_by(|a, b| a.0.cmp(&b.0));
+    let alike = |group: &[(String, f64)]| {
+        let usual = median(&mut group.iter().map(|(_, part)| *part).collect::<Vec<f64>>()).unwrap_or_default();
+        BOUNCES.contains(&usual) && group.iter().all(|(_, part)| (part / usual - 1.0).abs() < KEPT)
+    };
+    parts.len() >= ALIKE && parts.chunk_by(|a, b| a.0 == b.0).all(alike)
+}
+
+/// CORs of balls on floors: where all rows agree on one of these, the ball bounces.
+const BOUNCES: std::ops::Range<f64> = 0.3..0.98;
+
+/// They agree where each is off by less than this part: drops scatter by a hundredth or two, and
+/// the air takes a few more of a light ball.
+const KEPT: f64 = 0.04;
 
 /// Fewer rows than these fall alike by chance.
 const ALIKE: usize = 3;

@@ -12,7 +12,7 @@ use super::phrases::Phrase;
 use super::region::Region;
 use super::units::{Dimension, Unit};
 use super::vocabulary::{Atom, ROWS, folded, misspelt};
-use super::words::{Word, split};
+use super::words::{Kind, Word, split};
 use crate::finding::Doubt;
 
 /// What a table's title states, and where.
@@ -75,7 +75,13 @@ pub(super) fn stated(region: &Region<'_>) -> Stated {
         let cells: Vec<&str> = cells(row).collect();
         let (fps, height, sigma) = (frame_rate(&text), drop(&text).or(drop(&cells.join("; "))), error(&text));
         let zero = matches!(&found.datum, Some(Datum::Zero(zero)) if zero.line == line);
-        if !zero && fps.is_none() && height.is_none() && sigma.is_none() && states_length(&text) {
+        if !zero
+            && fps.is_none()
+            && height.is_none()
+            && sigma.is_none()
+            && states_length(&text)
+            && !names_no_readings(&text)
+        {
             found.length = found.length.or(Some((shown(&text), line)));
         }
         found.fps = found.fps.or(fps.map(|fps| (fps, line)));
@@ -157,6 +163,13 @@ fn of_column(region: &Region<'_>, column: usize) -> Option<f64> {
 /// What only looks like a word that was worked out, `different` for `differenz`, or is the
 /// beginning of one, `slo-mo` for `slope`, is none there.
 pub(super) fn names_no_readings(text: &str) -> bool {
+    // A body whose rule a test keeps is a name there: `ITF style test`.
+    let rule = |word: &Word| word.is(Atom::Goal) && word.text.chars().all(char::is_uppercase);
+    let words = split(text);
+    let test = |w: &Word| [Atom::Filler, Atom::Trial, Atom::Rebound, Atom::Release].iter().any(|atom| w.is(*atom));
+    let named = words.iter().position(rule).filter(|at| words.get(at + 1).is_some_and(test));
+    let bare = named.map(|at| text.replacen(&words[at].text, "", 1));
+    let text = bare.as_deref().unwrap_or(text);
     let heading = Heading::parse(text);
     let exact = |atom: Atom| split(text).iter().any(|word| word.is(atom));
     let slip = |atom: Atom| {
@@ -189,6 +202,12 @@ pub(super) fn doubted(region: &Region<'_>, table: &mut Table) {
     if region.header.iter().any(|name| turned(name)) {
         return;
     }
+    // What stands above a line that says whose readings follow is of others: `My results`.
+    let reads = |aside: &LeftAside| {
+        let read = |w: &Word| matches!(w.kind, Kind::Known([Atom::Filler, Atom::Read]));
+        split(&aside.name).iter().any(read) && !turned(&aside.name)
+    };
+    let from = region.aside.iter().rposition(reads).unwrap_or(0);
     // Of a name and what it is, the name says whether readings follow: `Product`, `range ball`; but
     // what was predicted is no reading wherever that is written.
     let row = |aside: &LeftAside| {
@@ -203,7 +222,7 @@ pub(super) fn doubted(region: &Region<'_>, table: &mut Table) {
         Some([name, value]) => turned(&name) || turned(&value) && wanted(&value),
         None => turned(&aside.name),
     };
-    let title = region.aside.iter().filter(|aside| !aside.name.starts_with('>')).find(titles);
+    let title = region.aside[from..].iter().filter(|aside| !aside.name.starts_with('>')).find(titles);
     let title = title.map(|title| Doubt::Title { text: title.name.clone(), line: title.line.unwrap_or(1) });
     // Comments speak of much else: of one every word is understood, or of a clause of it, which
     // states no number, for then it speaks of that; and what it states of something by name

@@ -35,8 +35,8 @@ pub(super) fn split(text: &str) -> Vec<Word> {
         let kind = if folded == "dos" && words.last().is_some_and(|w| w.is(Atom::After) || w.text == "de") {
             // Two in Spanish, and not `of the` in Portuguese: `después de dos rebotes`.
             Kind::Unknown
-        } else if piece.to_lowercase() == "před" {
-            // Before, in Czech; `pred` is short for predicted.
+        } else if matches!(&*piece.to_lowercase(), "před" | "önce") {
+            // Before, in Czech and Turkish; `pred` is short for predicted, and `once` counts.
             Kind::Known(&[Atom::Before])
         } else if Phrase::Point.is(&folded) && words.last().is_some_and(|w| w.is(Atom::Max)) {
             // `highest point`.
@@ -91,6 +91,13 @@ pub(super) fn split(text: &str) -> Vec<Word> {
         };
         let text = if matches!(kind, Kind::Known(_)) && folded == "in" { folded } else { piece };
         words.push(Word { text, kind });
+    }
+    counted_and(&mut words);
+    // What a ball is, and no estimate: `la balle est lâchée`.
+    for n in 1..words.len() {
+        if words[n].text == "est" && Phrase::Called.is(&folded(&words[n - 1].text)) {
+            words[n].kind = Kind::Known(&[Atom::Filler]);
+        }
     }
     fallen(&mut words);
     let_loose(&mut words);
@@ -151,6 +158,17 @@ fn compound(word: &str) -> Option<[(&str, &'static [Atom]); 2]> {
     found.next()
 }
 
+/// `e` between two that are counted joins them, `entre o 1º e o 2º`: it is no COR.
+fn counted_and(words: &mut [Word]) {
+    let counts = |w: &Word| matches!(w.kind, Kind::Number(_) | Kind::Ordinal(_));
+    for n in 1..words.len() {
+        let after = words[n + 1..].iter().find(|w| !matches!(w.kind, Kind::Known([Atom::Filler]) | Kind::Letter));
+        if words[n].text == "e" && counts(&words[n - 1]) && after.is_some_and(counts) {
+            words[n].kind = Kind::Known(&[Atom::Filler]);
+        }
+    }
+}
+
 /// What falls in height, or in speed, is not dropped but lost: `drop in height`.
 fn fallen(words: &mut [Word]) {
     let of = |w: &Word| w.is(Atom::Height) || w.is(Atom::Speed) || w.is(Atom::Energy);
@@ -164,16 +182,16 @@ fn fallen(words: &mut [Word]) {
 
 /// Whether something is let loose in a text.
 pub(super) fn lets_loose(text: &str) -> bool {
-    folded(text).contains(LOOSE) && split(text).iter().any(|word| word.is(Atom::Release))
+    LOOSE.iter().any(|loose| folded(text).contains(loose)) && split(text).iter().any(|word| word.is(Atom::Release))
 }
 
 /// The part of a verb that stands behind what is let loose.
-const LOOSE: &str = "los";
+const LOOSE: [&str; 2] = ["los", "go"];
 
 /// What is let loose is released, though other words stand between: `we laten een bal los`.
 fn let_loose(words: &mut [Word]) {
     let Some(at) = words.iter().position(|word| Phrase::Lets.is(&folded(&word.text))) else { return };
-    if let Some(loose) = words[at + 1..].iter_mut().find(|word| folded(&word.text) == LOOSE) {
+    if let Some(loose) = words[at + 1..].iter_mut().find(|word| LOOSE.contains(&&*folded(&word.text))) {
         loose.kind = Kind::Known(&[Atom::Release]);
     }
 }

@@ -23,7 +23,13 @@ pub(super) fn quoted(text: &str) -> Option<String> {
         let said = line.trim_start_matches('>').trim_start();
         line.starts_with('>') && !said.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '=' | '.' | ','))
     };
-    let silent = |line: &str| if typed(line) { format!("#{line}") } else { line.to_owned() };
+    // A remark that was typed is one of the table.
+    let remark = |line: &'_ str| -> String { line.trim_start_matches(['>', ' ', '#']).to_owned() };
+    let silent = |line: &str| match typed(line) {
+        true if line.trim_start_matches(['>', ' ']).starts_with('#') => format!("# {}", remark(line)),
+        true => format!("#{line}"),
+        false => line.to_owned(),
+    };
     text.lines().any(typed).then(|| text.lines().map(silent).collect::<Vec<_>>().join("\n") + "\n")
 }
 

@@ -11,6 +11,7 @@ use crate::read::region::Region;
 use crate::read::sequence::{LEVEL, of_samples};
 use crate::read::units::{Scale, Unit};
 use crate::read::vocabulary::Atom;
+use crate::read::words::{Word, split};
 
 impl Columns {
     /// Energies are read as the heights that a ball has them at, where a table has no other
@@ -20,16 +21,41 @@ impl Columns {
         let stands = |role: Role| !matches!(role, Role::Error | Role::Lost);
         let read = |c: &super::Column| c.heading.unknown.is_empty() && c.value().is_some_and(|v| stands(v.role));
         let released = |c: &super::Column| c.value().is_some_and(|v| v.what == What::Height && v.at == At::Release);
-        if self.columns.iter().any(|c| read(c) && !released(c) && !c.value().is_some_and(|v| v.or_trial)) {
-            return;
-        }
         let lost = |c: &super::Column| c.heading.unit.is_some_and(|unit| unit.scale == Scale::Percent);
         let named = |n: &usize| self.columns[*n].kind == Kind::Aside && self.columns[*n].heading.energy.is_some();
         let (parts, joules): (Vec<usize>, Vec<usize>) =
             (0..self.columns.len()).filter(named).partition(|&n| lost(&self.columns[n]));
+        // Of two energies of one row one is after the bounce, and the other before it: `PE at the
+        // top`, `KE at the floor`.
+        if let [one, other] = joules.as_slice()
+            && self.number().is_none_or(|(_, sure)| !sure)
+        {
+            let rebounds = |w: &Word| w.is(Atom::After) || w.is(Atom::Rebound) && !w.is(Atom::Top);
+            let after = |n: usize| split(&self.columns[n].heading.text).iter().any(rebounds);
+            let first = [(*one, *other), (*other, *one)].into_iter().find(|(n, of)| !after(*n) && after(*of));
+            if let Some(energy) = first.and_then(|(n, _)| self.columns[n].heading.energy.as_mut())
+                && energy.role == Role::Reading
+                && energy.at == At::Row
+            {
+                energy.at = At::Release;
+            }
+        }
         let at = |n: &usize| self.columns[*n].heading.energy.as_ref().filter(|v| v.role == Role::Reading).map(|v| v.at);
         let places: Vec<At> = joules.iter().filter_map(at).collect();
         let paired = places.contains(&At::Release) && places.iter().any(|at| *at != At::Release);
+        // The only height beside energies before and after, of a drop a row, is of no rebound: the
+        // two say more.
+        let other = |c: &super::Column| read(c) && !released(c) && !c.value().is_some_and(|v| v.or_trial);
+        let others: Vec<usize> = (0..self.columns.len()).filter(|&n| other(&self.columns[n])).collect();
+        let row = |n: usize| self.columns[n].value().is_some_and(|v| v.what == What::Height && v.at == At::Row);
+        let drops = paired && self.number().is_none_or(|(_, sure)| !sure);
+        match others.as_slice() {
+            [] => {}
+            [index] if drops && row(*index) && !self.columns.iter().any(|c| read(c) && released(c)) => {
+                self.leave(*index, Why::Elsewhere);
+            }
+            _ => return,
+        }
         let heights: Vec<usize> =
             (0..self.columns.len()).filter(|&n| read(&self.columns[n]) && released(&self.columns[n])).collect();
         let beside = heights.iter().any(|&n| !self.columns[n].value().is_some_and(|v| v.or_trial));

@@ -226,6 +226,12 @@ impl Columns {
                 (self.columns[index].kind, self.columns[index].heading.unknown) = (Kind::Event, Vec::new());
                 continue;
             }
+            // Codes that are another in each row are of what was dropped.
+            if heading.value().is_none() && region.codes(index).is_some() {
+                self.leave(index, Why::Note);
+                self.columns[index].heading.unknown.clear();
+                continue;
+            }
             // A name of a number that counts the rows is that, whatever else it says.
             if let Meaning::Number { sure } = heading.meaning
                 && self.columns.iter().enumerate().all(|(n, c)| n == index || !matches!(c.kind, Kind::Number { .. }))

@@ -4,7 +4,7 @@
 use super::{Column, Columns, Kind, plain};
 use crate::read::aside::Why;
 use crate::read::grid::shown;
-use crate::read::heading::{At, Value, What};
+use crate::read::heading::{At, Role, Value, What};
 use crate::read::phrases::Phrase;
 use crate::read::region::Region;
 use crate::read::units::{Dimension, Unit};
@@ -46,18 +46,24 @@ impl Columns {
         self.until_rest(region);
     }
 
-    /// The only height beside the time until all is quiet, of several rows: from there each drop
-    /// was let go.
+    /// The only height beside the time until all is quiet, or that of the first flight, of several
+    /// rows: from there each drop was let go.
     fn until_rest(&mut self, region: &Region<'_>) {
         let read = |what: What| {
             let mut found = self.values().filter(move |(_, c, v)| v.what == what && c.heading.unknown.is_empty());
             found.next().filter(|(_, _, v)| v.at == At::Row && v.trial.is_empty()).filter(|_| found.next().is_none())
         };
-        let total = read(What::Total).filter(|(_, c, _)| c.heading.has(Atom::Rest)).is_some();
+        let flight = |v: &Value| v.what == What::Interval && v.at == At::Nth(1) && v.role == Role::Reading;
+        let total = read(What::Total).filter(|(_, c, _)| c.heading.has(Atom::Rest)).is_some()
+            || self.number().is_none() && self.values().any(|(_, c, v)| flight(v) && c.heading.unknown.is_empty());
         let height = read(What::Height).map(|(n, _, _)| n);
         let alone = total && self.values().count() == 2 && region.drop.is_none() && region.rows.len() > 1;
         if let Some(index) = height.filter(|_| alone) {
+            let first = self.values().find(|(_, _, v)| flight(v)).map(|(n, _, _)| n);
             self.becomes(index, What::Height, At::Release);
+            if let Some(first) = first {
+                self.becomes(first, What::Interval, At::Row);
+            }
         }
     }
 
@@ -94,10 +100,12 @@ impl Columns {
     fn gates(&mut self, region: &Region<'_>) {
         let named = region.aside.iter().any(|aside| names_gate(&aside.name)) || names_gate(region.view.grid.name);
         let gate = |c: &Column| c.timed() && (named || names_gate(&c.heading.text));
-        let down = |c: &Column| c.heading.has(Atom::Before) || c.says(Phrase::Down);
-        let up = |c: &Column| (c.heading.has(Atom::After) || c.says(Phrase::UpTo)) && !down(c);
+        let down = |c: &Column| c.heading.has(Atom::Before) || c.says(Phrase::Down) || c.says(Phrase::Inwards);
+        let up =
+            |c: &Column| (c.heading.has(Atom::After) || c.says(Phrase::UpTo) || c.says(Phrase::Outwards)) && !down(c);
         let Some((before, after)) = self.pair(|c| gate(c) && down(c), |c| gate(c) && up(c)) else { return };
-        if self.columns[before].unit != self.columns[after].unit || self.values().count() > 2 {
+        let read = self.values().filter(|(n, _, v)| !v.or_trial || !region.counts(*n)).count();
+        if self.columns[before].unit != self.columns[after].unit || read > 2 {
             return;
         }
         for (index, at) in [(before, At::Before), (after, At::After)] {
@@ -143,6 +151,7 @@ impl Columns {
         let (Some(contact), Some(flight)) = (median(&mut lasted), median(&mut flown)) else { return };
         if ordered && contact < SHORT * flight {
             self.becomes(on, What::Time, At::Row);
+            self.columns[off].heading.unknown.clear();
             self.leave(off, Why::Elsewhere);
         }
     }
@@ -156,6 +165,18 @@ impl Columns {
             self.only(|c| read(c) && known(c))
         };
         let Some((time, flight)) = of(What::Time).zip(of(What::Interval)) else { return };
+        // What is shorter than all that lies between is how long each contact lasts.
+        let seconds = |row: usize, n: usize| Some(self.columns[n].unit?.si(region.view.number(row, n)?));
+        let brief = |pair: &[usize]| {
+            let between = seconds(pair[1], time)? - seconds(pair[0], time)?;
+            Some(seconds(pair[0], flight)? < SHORT * between)
+        };
+        let lasts = self.columns[flight].heading.has(Atom::Impact) && region.rows.len() > 2;
+        if lasts && region.rows.windows(2).all(|pair| brief(pair) == Some(true)) {
+            self.columns[flight].heading.unknown.clear();
+            self.leave(flight, Why::Other);
+            return;
+        }
         if !self.columns[flight].heading.has(Atom::Air) || self.columns[time].unit != self.columns[flight].unit {
             return;
         }
@@ -178,7 +199,13 @@ impl Columns {
     fn up_to_from(&mut self, region: &Region<'_>) {
         let height = |c: &Column| c.unit.is_none_or(|unit| unit.dimension == Dimension::Length);
         let from = |c: &Column| height(c) && c.of_words(Phrase::From);
-        let to = |c: &Column| height(c) && c.of_words(Phrase::UpTo);
+        // `back up to`, `terug tot`.
+        let back = |word: &str| Phrase::Outwards.is(word) || Phrase::Rose.is(word) || word == "back";
+        let to = |c: &Column| {
+            let words = words(c);
+            let rest = words.iter().position(|word| !back(word)).map_or(&[][..], |at| &words[at..]);
+            height(c) && (c.of_words(Phrase::UpTo) || rest.len() < words.len() && Phrase::UpTo.is(&rest.join(" ")))
+        };
         let Some((from, to)) = self.pair(from, to) else { return };
         let number = |n: usize| region.rows.iter().any(|&row| region.view.is_number(row, n));
         if number(from) && number(to) {

@@ -9,6 +9,7 @@ mod gates;
 mod pairs;
 mod shares;
 mod signals;
+mod specimens;
 
 use shares::of_hundredths;
 pub(super) use shares::{either, level};

@@ -15,23 +15,6 @@ use crate::read::units::{Dimension, Scale, Unit};
 use crate::read::vocabulary::{Atom, folded};
 
 impl Columns {
-    /// `Sample` above `A` and `B` names what was dropped; above numbers it counts.
-    pub(super) fn specimens(&mut self, region: &Region<'_>) {
-        for index in 0..self.columns.len() {
-            let column = &self.columns[index];
-            let mut cells = region.rows.iter().map(|&row| region.cell(row, index)).filter(|cell| !cell.is_empty());
-            let words = |cell: &str| !cell.contains(|c: char| c.is_ascii_digit());
-            let named = cells.clone().next().is_some() && cells.all(words);
-            // Balls that bear a code of their own in each row are as many of one kind.
-            let numbered = column.heading.has(Atom::Number) || column.heading.has(Atom::Repeat);
-            if column.kind == Kind::Trial && column.heading.has(Atom::Sample) && named {
-                self.columns[index].kind = Kind::Setting;
-            } else if column.kind == Kind::Setting && numbered && region.codes(index).is_some() {
-                self.columns[index].kind = Kind::Trial;
-            }
-        }
-    }
-
     /// Beside the speeds before and after each bounce the heights of release say nothing more.
     pub(super) fn sided(&mut self) {
         let read = |what: What, at: At| {

@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 
 use super::super::heading::Heading;
 use super::super::phrases::Phrase;
+use super::super::sequence::LEVEL;
 use super::super::vocabulary::{Atom, folded};
 use super::super::words::{Word, split};
 use super::{Part, length, parts};
@@ -79,6 +80,14 @@ fn drops(text: &str) -> Option<Vec<Drop>> {
                         drops.push(Drop { line, heights, rest: String::new() });
                         rose = true;
                     }
+                    // `it came back to 86 cm, 88 cm and 87 cm`: again from there.
+                    Role::Other if rose && joins(part.words) => {
+                        let Drop { line, heights: [release, last], .. } = drops.last()?;
+                        // Those that fall may be of bounces one after the other.
+                        length(part.number).zip(length(last)).filter(|(next, last)| *next > LEVEL * last)?;
+                        let (line, heights) = (*line, [release.clone(), part.number.to_owned()]);
+                        drops.push(Drop { line, heights, rest: String::new() });
+                    }
                     Role::Other if rose => {
                         let rest = &mut drops.last_mut()?.rest;
                         let more = format!("{rest} {} {}", part.words, part.number);
@@ -101,6 +110,12 @@ fn drops(text: &str) -> Option<Vec<Drop>> {
     }
     balls.retain(|name| !name.is_empty());
     (balls.len() < 2).then_some(drops)
+}
+
+/// Whether words do nothing but join a length to the one before.
+fn joins(words: &str) -> bool {
+    let word = words.trim_matches([' ', ',', '\n']);
+    word.is_empty() || Phrase::And.is(&folded(word))
 }
 
 /// The lines between blank ones, with the number of the first.
@@ -193,6 +208,11 @@ mod tests {
                 "From 1 m it rose to 64 cm, and from the lowest drop height, 50 cm, it rose to 32 cm. The error is about 1 cm.\n",
                 Some(format!("{header}\r1 m\t64 cm\t\r50 cm\t32 cm\t\n")),
             ),
+            (
+                "We dropped it from 1 m. It came back to 64 cm, 63 cm and 65 cm.\n",
+                Some(format!("{header}\r1 m\t64 cm\t\n1 m\t63 cm\t\n1 m\t65 cm\t\n").replace("\n1", "\r1")),
+            ),
+            ("We dropped it from 1 m. It came back to 64 cm, 41 cm and 26 cm.\n", None),
             ("From 1 m it rose to 64 cm. From 2 m the maximum of all was 1.3 m.\n", None),
             ("Dropped from 1 m it should come back to 64 cm. From 2 m it rose to 1.3 m.\n", None),
             ("Dropped from 1 m it came back to 64 cm.\n", None),

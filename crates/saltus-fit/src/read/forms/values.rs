@@ -1,7 +1,8 @@
 //! Values in a line, parted by commas or blanks, or in the brackets of a program.
 
 use super::super::cell::{self, Cell};
-use super::super::heading::Heading;
+use super::super::heading::{Heading, What};
+use super::super::named::bounce;
 use super::super::phrases::Phrase;
 use super::super::units::{Dimension, Unit};
 use super::super::vocabulary::{Atom, folded};
@@ -9,6 +10,53 @@ use super::super::words::{Word, split};
 
 /// A name in a line by itself stands before at least so many numbers.
 pub(super) const LIST: usize = 3;
+
+/// Lines of the name of a bounce, or of a trial, and a bare number, `bounce 1: 64`, below one that
+/// says what all are and in which unit, `Heights (cm):`, as a table; lines below them are remarks.
+pub(super) fn titled(text: &str) -> Option<String> {
+    let parted = |line: &'_ str| -> Option<(String, String)> {
+        let (name, number) = line.split_once(": ").or_else(|| line.split_once('='))?;
+        let bare = matches!(cell::read(number, false), Cell::Number(m) if m.unit.is_none());
+        let named = bounce(name.trim()).map(|n| n.to_string()).or_else(|| trial(name.trim()));
+        Some((named.filter(|_| bare)?, number.trim().to_owned()))
+    };
+    let lines: Vec<&str> = text.lines().collect();
+    let first = lines.iter().position(|line| parted(line).is_some())?;
+    let at = lines[..first].iter().rposition(|line| !line.trim().is_empty())?;
+    let title = lines[at].trim().trim_end_matches(':');
+    let heading = Heading::parse(title);
+    let measured = heading.unit.is_some_and(|u| matches!(u.dimension, Dimension::Length | Dimension::Time));
+    let rows: Vec<Option<(String, String)>> = lines.iter().map(|line| parted(line)).collect();
+    let mut others = lines[first..].iter().zip(&rows[first..]).filter(|(_, row)| row.is_none());
+    let count = rows.iter().flatten().count();
+    if !(measured && heading.understood() && count > 1 && others.all(|(line, _)| super::silent(line))) {
+        return None;
+    }
+    let plain = |line: &str| line.split([':', '=']).next().is_some_and(|name| name.trim().parse::<usize>().is_ok());
+    let counted = lines.iter().zip(&rows).any(|(line, row)| row.is_some() && plain(line));
+    let trials = rows.iter().flatten().any(|(name, _)| name.parse::<usize>().is_err());
+    let key = if counted {
+        ""
+    } else if trials {
+        "trial"
+    } else {
+        "bounce"
+    };
+    let spelt = |(n, line): (usize, &&str)| match &rows[n] {
+        Some((name, number)) => format!("{name}\t{number}"),
+        None if n == at => format!("{key}\t{title}"),
+        None if n < at || line.trim().is_empty() => (*line).to_owned(),
+        None => format!("#{line}"),
+    };
+    Some(lines.iter().enumerate().map(spelt).collect::<Vec<_>>().join("\n") + "\n")
+}
+
+/// The trial that a name is of, and of nothing else: `trial 2`, `Versuch B`.
+fn trial(name: &str) -> Option<String> {
+    let heading = Heading::parse(name);
+    let value = heading.value().filter(|value| value.what == What::Unsaid && heading.unknown.is_empty())?;
+    Some(value.trial.clone()).filter(|trial| !trial.is_empty())
+}
 
 /// The parts of a list that commas part, or blanks within brackets; a unit behind the last is that
 /// of all, `64, 41, 26 cm`.

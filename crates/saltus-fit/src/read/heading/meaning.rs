@@ -78,7 +78,10 @@ impl Heading {
         }
         // Until the second contact, or a later one, lies a rebound.
         let until = has(Atom::Impact) && numbers.bounce.first().is_some_and(|&contact| contact > 1);
-        if what == What::Time && has(Atom::Release) && !has(Atom::After) && !has(Air) && !until {
+        // A contact that starts releases nothing.
+        let starts = |w: &Word| w.is(Atom::Release) && Phrase::Begins.is(&folded(&w.text));
+        let released = has(Atom::Release) && !(has(Atom::Impact) && words.iter().any(starts));
+        if what == What::Time && released && !has(Atom::After) && !has(Air) && !until {
             return Meaning::Aside(Why::Other);
         }
         self.reading(what, numbers, run)
@@ -163,7 +166,9 @@ impl Heading {
             () if has(Lost) => Role::Lost,
             () if has(Mean) || has(Median) => Role::Mean,
             // The time of the greatest height.
-            () if has(Max) && (has(Height) && what == What::Time || has(Atom::Top)) => Role::Reading,
+            () if has(Max) && (has(Height) && (what == What::Time || has(Atom::Energy)) || has(Atom::Top)) => {
+                Role::Reading
+            }
             () if has(Max) => Role::Max,
             () if has(Min) => Role::Min,
             () => Role::Reading,
@@ -176,7 +181,9 @@ impl Heading {
             (Some(_), What::Height) if signed => At::Row,
             (Some(0), What::Height) => At::Release,
             (Some(&n), _) => At::Nth(n),
-            (None, What::Height | What::Unsaid) if released || has(Before) && !has(After) && !has(Rebound) => {
+            (None, What::Height | What::Unsaid)
+                if released || has(Before) && !has(After) && (!has(Rebound) || ahead(&split(&self.text))) =>
+            {
                 At::Release
             }
             (None, What::Speed) if has(After) || has(Rebound) && !has(Before) => At::After,
@@ -225,7 +232,7 @@ impl Heading {
         let has = |atom| self.has(atom);
         let at = match value.at {
             At::Nth(_) => value.at,
-            _ if has(Atom::After) || has(Atom::Rebound) => At::Row,
+            _ if !ahead(words) && (has(Atom::After) || has(Atom::Rebound)) => At::Row,
             _ if has(Atom::Before) || has(Atom::Release) || has(Atom::Impact) => At::Release,
             at => at,
         };
@@ -276,4 +283,12 @@ impl Heading {
             words.clear();
         }
     }
+}
+
+/// Whether what words speak of was ahead of a rebound: `before the rebound`.
+fn ahead(words: &[Word]) -> bool {
+    let mut told = words.iter().filter(|w| !matches!(w.kind, Kind::Known([Atom::Filler])));
+    let before = |w: &Word| w.is(Atom::Before) && !w.is(Atom::Impact);
+    let after = words.iter().any(|w| w.is(Atom::After));
+    !after && told.any(before) && told.next().is_some_and(|w| w.is(Atom::Rebound))
 }
