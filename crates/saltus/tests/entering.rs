@@ -1,11 +1,12 @@
-//! What is due as a mode is entered: in the order listed, and not again where a jump has left it.
+//! What is due at one time, as a mode is entered or on the way: in the order listed, and not again
+//! where a jump has left it.
 
 #![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
 mod methods;
 
 use proptest::prelude::*;
-use saltus::{Entry, ErrorKind, Hybrid, Polynomial, Simulation, Stop};
+use saltus::{Edge, Entry, ErrorKind, Hybrid, Jet, Polynomial, Simulation, Stop};
 
 use methods::methods;
 
@@ -150,5 +151,76 @@ proptest! {
         let run = simulation.run("run", [0.0; 2], start..start + 2.0 * wall / speed).unwrap();
         let places: Vec<_> = run.trajectory.jumps().iter().filter_map(|jump| Some(jump.edge()?.place)).collect();
         prop_assert_eq!(places, [0, 1]);
+    }
+}
+
+/// How the flow of a fall is given.
+#[derive(Clone, Copy, Debug)]
+enum By {
+    Steps(usize),
+    Series,
+    Solution,
+}
+
+/// Guards of a body that falls from `high` at a speed: each is zero where it comes to `low`, and
+/// rounds in its own way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Mark {
+    Height,
+    Cube,
+    Exponential,
+    Sine,
+    Steepened,
+    Energy,
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    /// Of two guards that are zero at one time, but for rounding, the one listed first is taken.
+    #[test]
+    fn what_falls_at_one_time_is_taken_in_the_order_listed(
+        (high, low) in (0.5..20.0_f64, -0.2..0.8_f64), (speed, gravity) in (-3.0..3.0_f64, 0.5..20.0_f64),
+        marks in prop::sample::subsequence(vec![
+            Mark::Height, Mark::Cube, Mark::Exponential, Mark::Sine, Mark::Steepened, Mark::Energy,
+        ], 2).prop_shuffle(),
+        by in prop::sample::select(vec![
+            By::Steps(0), By::Steps(1), By::Steps(3), By::Series, By::Solution,
+        ]),
+        (power, start) in (3..12_i32, prop::sample::select(vec![0.0, 1.0, 1000.0])),
+        affine: bool,
+    ) {
+        // Steps sum up height and speed apart, each with its own roundings.
+        let by = if marks.contains(&Mark::Energy) && matches!(by, By::Steps(_)) { By::Series } else { by };
+        let low = low * high;
+        let (apex, energy) = (high + speed * speed / (2.0 * gravity), speed * speed + 2.0 * gravity * (high - low));
+        let guard = move |mark, x: &[f64; 2]| match mark {
+            Mark::Height => x[0] - low,
+            Mark::Cube => x[0].powi(3) - low.powi(3),
+            Mark::Exponential => x[0].exp() - low.exp(),
+            Mark::Sine => ((x[0] - low) / (apex - low)).sin(),
+            Mark::Steepened => (x[0] - low) * (1.0 + x[1] * x[1]),
+            Mark::Energy => energy - x[1] * x[1],
+        };
+        let model = Hybrid::new()
+            .mode("fall", move |_t, x: &[f64; 2]| [x[1], -gravity])
+            .mode("first", |_t, _x| [0.0; 2])
+            .mode("second", |_t, _x| [0.0; 2]);
+        let model = match by {
+            By::Steps(_) => model,
+            By::Series => model.series("fall", move |t, x: [Jet; 2]| [x[1], 0.0 * t - gravity]),
+            By::Solution => {
+                model.exact("fall", move |_t, x| Polynomial::from([*x, [x[1], -gravity], [-0.5 * gravity, 0.0]]))
+            }
+        };
+        let edge = |mark| {
+            let edge = Edge::new(move |_t, x: &[f64; 2]| guard(mark, x), |_t, x: &[f64; 2]| *x);
+            if affine && mark == Mark::Height { edge.affine() } else { edge }
+        };
+        let model = model.edge_with("fall", "first", edge(marks[0])).edge_with("fall", "second", edge(marks[1]));
+        let method = methods()[if let By::Steps(method) = by { method } else { 3 }];
+        let run = Simulation::of(&model).stepper(method).tolerance(10.0_f64.powi(-power));
+        let run = run.run("fall", [high, speed], start..start + 100.0).unwrap();
+        prop_assert_eq!(run.end.mode, "first");
     }
 }

@@ -104,7 +104,7 @@ proptest! {
     #[test]
     fn a_flow_along_a_plane_stays_on_it(
         f in prop::array::uniform3(-3_i32..4), w in prop::array::uniform3(-3_i32..4), to in prop::array::uniform3(-4_i32..5),
-        affine in any::<bool>(), method in 0..4_usize, began in -5.0..5.0_f64,
+        affine in any::<bool>(), method in 0..5_usize, began in -5.0..5.0_f64,
     ) {
         let [f, w, to] = [f, w, to].map(|list| list.map(f64::from));
         let q = [f[1] * w[2] - f[2] * w[1], f[2] * w[0] - f[0] * w[2], f[0] * w[1] - f[1] * w[0]];
@@ -115,12 +115,14 @@ proptest! {
         let mut flow = Hybrid::new().mode("run", move |_t, _x: &[f64; 3]| f);
         if method == 0 {
             flow = flow.series("run", move |t, _x: [Jet<'_>; 3]| f.map(|f| t * 0.0 + f));
+        } else if method == 4 {
+            flow = flow.exact("run", move |_t, x| [*x, f].into());
         }
         flow = flow.edge("run", "run", move |_t, x| dot(q, x) - away, move |_t, _x| to).entry(Entry::Fire);
         if affine {
             flow = flow.affine();
         }
-        let stepper = [Auto::new(), Auto::new(), Auto::from(Tsit5), Auto::from(Rodas5P)][method];
+        let stepper = [Auto::new(), Auto::new(), Auto::from(Tsit5), Auto::from(Rodas5P), Auto::new()][method];
         let run = Simulation::of(&flow).stepper(stepper).most_jumps(9).run("run", from, began..began + 3.0).unwrap();
         prop_assert_eq!((run.end.jumps, run.end.stop), (1, Stop::Time));
     }

@@ -55,7 +55,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                     {
                         observer.inspection(&Inspection { mode, edge, start: now, span: limit, evidence });
                     }
-                    keep_earlier(&mut found, OnStep { edge, crossing, near: None, slope: None });
+                    self.keep_earlier(&mut found, now, OnStep { edge, crossing, near: None, slope: None });
                 }
                 continue;
             }
@@ -114,7 +114,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             }
             if let Some(crossing) = fall {
                 let slope = derivatives.map(|[slope, _]| slope);
-                keep_earlier(&mut found, OnStep { edge, crossing, near, slope });
+                self.keep_earlier(&mut found, now, OnStep { edge, crossing, near, slope });
             }
         }
         let first = found.as_ref().map_or(f64::INFINITY, |found| found.crossing.inside);
@@ -277,6 +277,20 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     pub(super) fn undefined(&self, mode: A::Mode, edge: A::Edge, now: Time, s: f64, x: &A::State) -> Error {
         guard_undefined(self.automaton, mode, edge, now.after(s).seconds(), x)
     }
+
+    /// Keeps the earlier of the crossing `found` on a step and a `further` one; of two that time
+    /// cannot tell apart the first.
+    #[inline]
+    fn keep_earlier(&mut self, found: &mut Option<OnStep<A>>, now: Time, further: OnStep<A>) {
+        if let Some(first) = found {
+            if let Some(both) = together(&first.crossing, &further.crossing) {
+                first.crossing = both;
+                return;
+            }
+            self.may_be_tied(first.edge, first.crossing.inside, now, further.crossing.outside);
+        }
+        *found = Some(further);
+    }
 }
 
 /// Where on a dense output guards are looked at.
@@ -356,19 +370,6 @@ fn innermost<S: State>(mut guard: impl FnMut(&S) -> f64, nearest: &S, inner: &S,
         }
     }
     (inner.clone(), guard(inner))
-}
-
-/// Keeps the earlier of the crossing `found` on a step and a `further` one; of two that time cannot
-/// tell apart the first.
-#[inline]
-fn keep_earlier<A: Automaton>(found: &mut Option<OnStep<A>>, further: OnStep<A>) {
-    if let Some(first) = found
-        && let Some(both) = together(&first.crossing, &further.crossing)
-    {
-        first.crossing = both;
-    } else {
-        *found = Some(further);
-    }
 }
 
 /// Of two crossings that time cannot tell apart the first, with the inner end of both, so that

@@ -5,8 +5,10 @@ use std::fmt::Debug;
 
 use crate::automaton::Automaton;
 use crate::automaton::solution::Polynomial;
-use crate::certainty::SMALL;
-use crate::cross::{Crossing, Doubt, Evidence, Searched, Start, Undefined, first_fall_on_arc, neighbours, settle};
+use crate::certainty::{FAR, ROUNDINGS, SMALL, TINY};
+use crate::cross::{
+    Crossing, Doubt, Evidence, Searched, Start, Undefined, first_fall_on_arc, neighbours, sample_times, settle,
+};
 use crate::ending::Stop;
 use crate::error::{Error, ErrorKind, Place};
 use crate::observe::Observer;
@@ -18,6 +20,7 @@ use crate::time::{LAST, Span, Time, resolution};
 
 use super::affine::{less_constant, only_touched};
 use super::crossing::{Close, unlevelled};
+use super::enter::weight;
 use super::solved::First;
 use super::{Advance, ArcEnd};
 
@@ -125,22 +128,28 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let mut from = 0.0;
         let (mut start, mut level) = (start, self.level(edge));
         let automaton = self.automaton;
+        let guard_at = |count: &mut u64, s: f64| {
+            *count += 1;
+            automaton.guard(edge, now.after(s).seconds(), &at(s))
+        };
         let mut evidence = Evidence::Excluded;
+        let mut on_wall = start == Start::Spent || self.memory.wall(edge).is_some();
         loop {
             let to = if from + window < limit { from + window } else { limit };
-            let count = &mut self.memory.stats.guards;
-            let mut guard = |s: f64| {
-                *count += 1;
-                automaton.guard(edge, now.after(s).seconds(), &at(s))
-            };
+            let mut guard = |s: f64| guard_at(&mut self.memory.stats.guards, s);
             let tick = resolution(now.seconds().abs() + to);
             let mut above = |s| guard(from + s) - level;
             let value = above(0.0);
             let searched = first_fall_on_arc(&mut above, value, (from, to - from), start, tick)
                 .map_err(|Undefined(s)| Undefined(from + s))?;
             let searched = unlevelled(searched, level, &mut guard);
+            // What falls and rises along a wall is rounding. Another edge may have cut the window.
+            let whole = to.max(from + natural.max(self.memory.longest_duration));
+            on_wall = on_wall && self.runs_along(edge, now, (from, whole), &at);
+            let searched = if on_wall { Searched::solved(None) } else { searched };
             evidence = evidence.and(searched.evidence.later(from));
             if let Some(crossing) = searched.fall {
+                let mut guard = |s: f64| guard_at(&mut self.memory.stats.guards, s);
                 let fall = if from == 0.0 { Some(crossing) } else { later(&mut guard, from, &crossing) };
                 return Ok(Searched { evidence, ..Searched::solved(fall) });
             }
@@ -157,6 +166,27 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             window = (2.0 * window).min(longest).max(2.0 * resolution(from));
             (start, level) = (Start::Resumed, 0.0);
         }
+    }
+
+    /// Whether the guard of `edge` moves on no part of a window of a solution `at` beyond what
+    /// rounding the coordinates, none smaller than at the solution's start, and the time leaves.
+    #[cold]
+    #[inline(never)]
+    fn runs_along(&mut self, edge: A::Edge, now: Time, (from, to): (f64, f64), at: &impl Fn(f64) -> A::State) -> bool {
+        let start = at(0.0);
+        sample_times(from, to).into_iter().rev().all(|s| {
+            let (t, x) = (now.after(s).seconds(), at(s));
+            let sizes = x.with(|i| x.get(i).abs().max(start.get(i).abs()));
+            self.memory.stats.guards += 2;
+            let g = self.guard(edge, t, &x);
+            // Most guards are clear of zero at a glance.
+            let nudged = x.with(|i| x.get(i) + TINY * weight(i) * sizes.get(i));
+            if g.abs() > (self.guard(edge, t + FAR * self.tick(t), &nudged) - g).abs() {
+                return false;
+            }
+            let rounding = self.time_rounding(edge, t, &x, g) + self.guard_rounding(edge, t, &x, g, &sizes);
+            g.abs() <= ROUNDINGS * rounding
+        })
     }
 
     /// How far the search of an exact arc went, where a limit of the run cut it before any

@@ -10,6 +10,7 @@ mod grazing;
 mod memory;
 mod near;
 mod noise;
+mod order;
 mod promises;
 mod series;
 mod shared;
@@ -83,6 +84,8 @@ pub(crate) struct Advance<'a, A: Automaton, M> {
     /// An edge that has stayed at its wall on this arc, where all that its guard reads is below
     /// what the absolute tolerance resolves.
     held_down: Option<A::Edge>,
+    /// Edges of this arc that may fall at the time at which one listed behind them does.
+    tied: Few<A::Edge>,
     /// The stretch of time on which the flow of the arc's mode is smooth.
     smooth: Smooth,
     /// The pattern of its Jacobian, where that is given.
@@ -93,7 +96,18 @@ impl<'a, A: Automaton, M> Advance<'a, A, M> {
     #[inline(always)]
     pub(crate) fn new(automaton: &'a A, stepper: M, options: Options, memory: Memory<A::Edge, A::State>) -> Self {
         let (tape, held, smooth) = (Tape::new(), Held::default(), Smooth::ALWAYS);
-        Self { automaton, stepper, options, memory, tape, held, held_down: None, smooth, sparsity: None }
+        Self {
+            automaton,
+            stepper,
+            options,
+            memory,
+            tape,
+            held,
+            held_down: None,
+            tied: Few::new_const(),
+            smooth,
+            sparsity: None,
+        }
     }
 }
 
@@ -261,7 +275,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             // Nor is an exact solution cut in stops.
             _ => self.stepped(mode, x.clone(), clock.in_numbers(), true, observer),
         };
-        let end = end?;
+        let mut end = end?;
+        if !self.tied.is_empty() {
+            end = self.in_order(mode, x, now, end);
+        }
         if let Some(edge) = self.held_down.take() {
             let (ArcEnd::Crossing { time, .. } | ArcEnd::Stop { time, .. }) = end;
             doubt::<A>(Doubt::Grazing, mode, edge, (now, time), observer);

@@ -127,7 +127,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     }
 
     /// A state of what each coordinate is or changes by on an arc, no two alike.
-    fn reach_of(&self, mode: A::Mode, [began, time]: [f64; 2], [x, y]: [&A::State; 2]) -> A::State {
+    pub(super) fn reach_of(&self, mode: A::Mode, [began, time]: [f64; 2], [x, y]: [&A::State; 2]) -> A::State {
         let flow = self.automaton.flow(mode, self.smooth.within(began), x);
         let by = |i: usize| if i < flow.len() { ((time - began) * flow.get(i)).abs() } else { 0.0 };
         let larger = |size: f64, other: f64| if other.is_finite() { size.max(other) } else { size };

@@ -79,7 +79,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 (None, Some(crossing)) => Some(first(crossing)),
                 (Some(found), Some(crossing)) => Some(match together(&found.crossing, &crossing) {
                     Some(crossing) => First { crossing, ..found },
-                    None => first(crossing),
+                    None => {
+                        self.may_be_tied(found.edge, found.crossing.inside, now, crossing.outside);
+                        first(crossing)
+                    }
                 }),
             };
         }

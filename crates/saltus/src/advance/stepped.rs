@@ -168,6 +168,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let closer = Step { now: step.now, c: dense.as_ref(), scale: h, size: h };
             let range = Range { limit: ahead, ..settled };
             if let Some(again) = self.first_crossing(mode, closer, range, None)? {
+                if again.edge != rough.edge {
+                    self.tied.push(rough.edge);
+                }
                 return Ok(self.crossed(mode, &again, (closer, Some(arrived)), remaining, observer));
             }
         }

@@ -1,0 +1,55 @@
+//! Edges whose guards are zero at one time, but for rounding: the first in the order listed is
+//! taken.
+
+use std::mem;
+
+use crate::automaton::Automaton;
+use crate::certainty::{FEW, MINUTE};
+use crate::state::State;
+use crate::step::Stepper;
+use crate::time::Time;
+
+use super::{Advance, ArcEnd};
+
+impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
+    /// Notes an `edge` that falls so shortly after a time `s`, at which one listed behind it does,
+    /// that rounding may have put them in this order.
+    #[inline]
+    pub(super) fn may_be_tied(&mut self, edge: A::Edge, falls: f64, now: Time, s: f64) {
+        if falls - s <= MINUTE * (now.seconds().abs() + s) {
+            self.tied.push(edge);
+        }
+    }
+
+    /// The end of an arc from `x`: of the edges that may be tied with the one that ends it, and are
+    /// listed before it, by the first whose guard rounding alone keeps from zero there.
+    ///
+    /// Its guard was above zero as the arc began, and was not found to fall before. Of arcs whose
+    /// durations show rounding no order is better than another.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn in_order(&mut self, mode: A::Mode, x: &A::State, now: Time, end: ArcEnd<A>) -> ArcEnd<A> {
+        let tied = mem::take(&mut self.tied);
+        let ArcEnd::Crossing { edge: last, time, before } = end else { return end };
+        if self.memory.is_short(time.since(now)) {
+            return ArcEnd::Crossing { edge: last, time, before };
+        }
+        let t = time.seconds();
+        let reach = self.reach_of(mode, [now.seconds(), t], [x, &before]);
+        let sizes = reach.with(|i| reach.get(i).max(self.size(x, i)));
+        let listed = self.automaton.edges(mode);
+        for edge in listed.iter().take_while(|&edge| edge != last).filter(|edge| tied.contains(edge)) {
+            self.memory.stats.guards += 2;
+            if self.memory.spent_as(edge).is_some() || self.guard(edge, now.seconds(), x) <= 0.0 {
+                continue;
+            }
+            let g = self.guard(edge, t, &before);
+            let rounding = self.time_rounding(edge, t, &before, g) + self.guard_rounding(edge, t, &before, g, &sizes);
+            if g.abs() <= FEW * rounding {
+                (self.memory.slack, self.memory.leapt) = (FEW * g.abs(), false);
+                return ArcEnd::Crossing { edge, time, before };
+            }
+        }
+        ArcEnd::Crossing { edge: last, time, before }
+    }
+}
