@@ -218,3 +218,38 @@ fn what_was_predicted_is_doubted() {
     assert!(report.verdict() == Verdict::Doubtful || report.notes().iter().any(|n| n.to_string().contains("12")));
     assert!(read("Zorb heights (cm):\nzorb 1: 64\nzorb 2: 41\n").is_err());
 }
+
+/// Several people type the name of a ball in capitals of their own, and with blanks.
+#[test]
+fn a_name_in_any_capitals_is_of_one_ball() {
+    let mut text = String::from("ball,drop height (cm),rebound height (cm)\n");
+    let names = [("Tennis ball", 0.74), ("golf ball", 0.85), ("tennis ball", 0.74), ("Golf  Ball", 0.85)];
+    for (name, e) in names {
+        let rows = rebounds(e, 150.0).into_iter().map(|h| format!("{name},150,{h:.1}\n"));
+        text.extend(rows);
+    }
+    let table = read(&text).unwrap();
+    assert_eq!(table.groups(), ["Tennis ball", "golf ball"]);
+}
+
+/// What stands above is not written again: a mark stands for it, in every column.
+#[test]
+fn a_mark_of_repetition_is_what_stands_above() {
+    for mark in ["\"", "''", "-\"-", "-//-", "〃", "ditto", "idem", "то же"] {
+        for blank in ["    ", "\t"] {
+            let mut text = ["drop (cm)", "rebound (cm)", "floor"].join(blank) + "\n";
+            for (from, first) in [("200", true), ("150", true), ("100", true)] {
+                let height: f64 = from.parse().unwrap();
+                for (n, h) in rebounds(0.78, height).into_iter().take(3).enumerate() {
+                    let from = if n == 0 { from } else { mark };
+                    let floor = if n == 0 && first { "tile" } else { mark };
+                    text += &[from, &format!("{h:.1}"), floor].join(blank);
+                    text.push('\n');
+                }
+            }
+            let report = fit(&text);
+            let e = report.cor().unwrap_or_else(|| panic!("{text}")).value;
+            assert!(near(e, 0.78), "{e} {text}");
+        }
+    }
+}

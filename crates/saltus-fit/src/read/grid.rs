@@ -1,6 +1,7 @@
 //! From text to cells: delimiter, comments, and the place of every cell for messages.
 
 mod grouped;
+mod repeated;
 mod unfold;
 
 use csv::{ReaderBuilder, StringRecord};
@@ -52,6 +53,7 @@ impl<'a> Grid<'a> {
         let (cells, ends, rows, origin) = (String::new(), Vec::new(), Vec::new(), Vec::new());
         let mut grid = Self { name, tab, text, delimiter, cells, ends, rows, origin, decimal: false, grouped: None };
         grid.fill()?;
+        grid.repeat();
         grid.ungroup();
         grid.decimal = grid.comma() && grid.decimal_commas();
         grid.united();

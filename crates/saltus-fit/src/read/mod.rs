@@ -333,6 +333,7 @@ impl Table {
     /// Once all trials are together: what must not be counted is taken out, what was read is noted.
     fn checked(mut self) -> Self {
         self.trials.iter_mut().for_each(|trial| trial.readings.shrink_to_fit());
+        pool::spelt(&mut self.trials);
         self.notes.insert(0, Note::Size { rows: self.rows, trials: self.trials.len() }.into());
         check::table(&mut self);
         self

@@ -94,10 +94,12 @@ pub(super) enum Phrase {
     Next,
     /// What a ball is called in a word by itself.
     Called,
+    /// A cell repeats the one above it.
+    Ditto,
 }
 
 impl Phrase {
-    const ALL: [(&'static str, Self); 43] = [
+    const ALL: [(&'static str, Self); 44] = [
         ("missing", Self::Missing),
         ("about", Self::About),
         ("half", Self::Half),
@@ -141,6 +143,7 @@ impl Phrase {
         ("outwards", Self::Outwards),
         ("next", Self::Next),
         ("called", Self::Called),
+        ("ditto", Self::Ditto),
     ];
 
     /// The phrases of this kind, in the order of the file.

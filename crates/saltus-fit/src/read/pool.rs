@@ -33,6 +33,22 @@ pub(super) fn apart(parts: &mut [(String, Table)]) {
     }
 }
 
+/// Spells names of groups that differ in capitals and blanks alone as the first of them: of rows
+/// that several people type. A letter or two may be a mark, of which `a` and `A` are two.
+pub(super) fn spelt(trials: &mut [Trial]) {
+    let mut known: Vec<(String, String)> = Vec::new();
+    for trial in trials.iter_mut().filter(|trial| trial.group.chars().nth(2).is_some()) {
+        if known.last().is_some_and(|(_, name)| *name == trial.group) {
+            continue;
+        }
+        let plain = trial.group.split_whitespace().collect::<Vec<_>>().join(" ").to_lowercase();
+        match known.iter().position(|(other, _)| *other == plain) {
+            Some(n) => trial.group.clone_from(&known[n].1),
+            None => known.push((plain, trial.group.clone())),
+        }
+    }
+}
+
 /// Takes out tables of ratios beside others, and of means of the drops of others: they were worked
 /// out from them.
 pub(super) fn measured<T>(parts: &mut Vec<T>, table: impl Fn(&T) -> &Table) -> Vec<T> {

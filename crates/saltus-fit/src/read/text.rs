@@ -37,6 +37,7 @@ pub(super) fn text<'a>(name: &str, bytes: &'a [u8]) -> Result<Text<'a>, TableErr
     };
     let taken = |text: Cow<'a, str>, form: fn(&str) -> Option<String>| form(&text).map_or(text, Cow::Owned);
     let around = [
+        wrapped::repeated,
         forms::dumped,
         wrapped::pictured,
         wrapped::pointed,

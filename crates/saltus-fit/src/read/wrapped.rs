@@ -33,6 +33,14 @@ pub(super) fn quoted(text: &str) -> Option<String> {
     text.lines().any(typed).then(|| text.lines().map(silent).collect::<Vec<_>>().join("\n") + "\n")
 }
 
+/// A text in which each `"` stands by itself, a mark of repetition, with one in its place that no
+/// table takes for the beginning of a cell in quotes; `None` where one is that, or of inches.
+pub(super) fn repeated(text: &str) -> Option<String> {
+    let edge = |c: Option<char>| c.is_none_or(|c| c.is_whitespace() || matches!(c, ';' | '|' | '-' | '–' | '—'));
+    let alone = |(at, _): (usize, &str)| edge(text[..at].chars().next_back()) && edge(text[at + 1..].chars().next());
+    (text.contains('"') && text.match_indices('"').all(alone)).then(|| text.replace('"', "〃"))
+}
+
 /// A text whose remarks, as programs mark them, `% times`, `// times`, `-- times`, are those of
 /// tables; `None` if there are none.
 pub(super) fn commented(text: &str) -> Option<String> {
@@ -279,6 +287,14 @@ mod tests {
         assert_eq!(lettered("\tA\tB\n1\tdrop\trise\n2\t60\t30\n").as_deref(), Some("\ndrop\trise\n60\t30\n"));
         for text in ["A\tB\n60\t30\n80\t41\n", "\tA\tC\n1\tx\ty\n2\t60\t30\n", "\tA\tB\n1\tx\ty\n3\t60\t30\n"] {
             assert_eq!(lettered(text), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn quotes_around_cells_and_inches_repeat_nothing() {
+        assert_eq!(repeated("a  b\n1  2\n\"  3\n").as_deref(), Some("a  b\n1  2\n〃  3\n"));
+        for text in ["a,b\n\"1,5\",\"2\"\n", "drop,rebound\n40\",21\"\n", "a;b\n1;2\n", "a,b\n\"x\ny\",2\n"] {
+            assert_eq!(repeated(text), None, "{text}");
         }
     }
 }
