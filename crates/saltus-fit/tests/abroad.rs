@@ -332,4 +332,17 @@ proptest! {
         let cor = trusted(&format!("Bounces of a ball\n{names}\n\nBounce;Max height (m)\n{rows}"));
         prop_assert!(near(cor, e, 0.01), "{}", cor);
     }
+
+    /// What passes a rule, or fails, was measured all the same.
+    #[test]
+    fn what_fails_a_rule_was_measured(
+        e in 0.6..0.8_f64,
+        name in prop::sample::select(vec!["Pass/Fail", "Result", "Ergebnis", "Status"]),
+        answers in prop::sample::select(vec![("PASS", "FAIL"), ("pass", "Fail")]),
+    ) {
+        let row = |n: usize| format!("100,{:.1},{}\n", 100.0 * e * e * (1.0 + off(n)), if n == 3 { answers.1 } else { answers.0 });
+        let rows: String = (0..7).map(row).collect();
+        let table = Table::parse("a.csv", format!("drop (cm),rebound (cm),{name}\n{rows}").as_bytes(), &ReadOptions::default());
+        prop_assert_eq!(table.unwrap().trials().len(), 7);
+    }
 }

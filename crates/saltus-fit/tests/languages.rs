@@ -4,7 +4,7 @@
 #![allow(clippy::panic, clippy::unwrap_used)] // a test that cannot go on has failed
 
 use proptest::prelude::*;
-use saltus_fit::{Fit, ReadOptions, Table};
+use saltus_fit::{Fit, ReadOptions, Table, Why};
 
 /// How the heights of release and of the rebound are called.
 const DROPS: [[&str; 2]; 41] = [
@@ -77,6 +77,9 @@ const SERIES: [[&str; 3]; 22] = [
     ["Odraz č.", "Výška", "Čas"],
 ];
 
+/// Headings of every language, and what they are of.
+const HEADINGS: &str = include_str!("tables/headings.tsv");
+
 fn cor(text: &str) -> f64 {
     let table = Table::parse("table.csv", text.as_bytes(), &ReadOptions::default())
         .unwrap_or_else(|error| panic!("{error}\n{text}"));
@@ -130,5 +133,40 @@ proptest! {
             format!("bounce,height (mm)\n{}", rows.collect::<String>())
         };
         prop_assert_eq!(cor(&table(&plain)), cor(&table(&parted)));
+    }
+}
+
+/// A table of each kind in each language: drops with what is lost of each and a remark, the heights
+/// of three bounces, times in the air, speeds. Every heading is understood.
+#[test]
+fn headings_are_read_in_every_language() {
+    const E: f64 = 0.8;
+    let lines = HEADINGS.lines().filter(|line| !line.starts_with('#'));
+    for line in lines {
+        let names: Vec<&str> = line.split('\t').collect();
+        let [_, trial, drop, rebound, first, second, third, air, before, after, lost, remark] = names[..] else {
+            panic!("{line}")
+        };
+        let h = |row: usize, bounce: i32| (150.0 - 10.0 * row as f64) * E.powi(2 * bounce);
+        let (mut drops, mut heights) = (String::new(), String::new());
+        let (mut flights, mut speeds) = (format!("n;{air} (s)\n"), format!("{before} (m/s);{after} (m/s)\n"));
+        for row in 0..5 {
+            let gone = h(row, 0) - h(row, 1);
+            drops += &format!("{};{:.1};{:.1};{gone:.1};\n", row + 1, h(row, 0), h(row, 1));
+            heights += &format!("{};{:.1};{:.1};{:.1};{:.1}\n", row + 1, h(row, 0), h(row, 1), h(row, 2), h(row, 3));
+            flights += &format!("{};{:.4}\n", row + 1, 0.9 * E.powi(row as i32));
+            speeds += &format!("{:.3};{:.3}\n", 5.0 + row as f64, E * (5.0 + row as f64));
+        }
+        let drops = format!("{trial};{drop} (cm);{rebound} (cm);{lost} (cm);{remark}\n{drops}");
+        let heights = format!("{trial};{drop} (cm);{first} (cm);{second} (cm);{third} (cm)\n{heights}");
+        for text in [drops, heights, flights, speeds].iter().filter(|text| !text.contains("- (")) {
+            let table = Table::parse("table.csv", text.as_bytes(), &ReadOptions::default())
+                .unwrap_or_else(|error| panic!("{error}\n{text}"));
+            let unread = table.left_aside().iter().any(|left| left.why == Why::NotUnderstood);
+            assert!(!unread, "{:?}\n{text}", table.left_aside());
+            let report = Fit::new().run(&table).unwrap();
+            let found = report.cor().unwrap_or_else(|| panic!("{report}\n{text}")).value;
+            assert!((found - E).abs() < 0.01 && report.groups().is_empty(), "{report}\n{text}");
+        }
     }
 }

@@ -159,6 +159,8 @@ impl Heading {
             return Self::parse(&format!("calculated {sign}")).called(name);
         }
         // Programs put the run before the name: 'Latest: Time (s)'.
+        let spelt = inside::swedish(text);
+        let text = spelt.as_ref();
         let (run, name) = match text.split_once(':') {
             Some((run, name)) if !name.trim().is_empty() && !run.contains(['(', '[']) => (run.trim(), name),
             _ => ("", text),

@@ -11,7 +11,7 @@ use super::heading::{Heading, What};
 use super::named::event;
 use super::phrases::Phrase;
 use super::region::Region;
-use super::vocabulary::{Atom, ROWS, footnotes};
+use super::vocabulary::{Atom, ROWS, folded, footnotes};
 use super::words::split;
 
 /// Whether a name and the cell beside it say that what they stand in does not count: `discarded:
@@ -55,7 +55,13 @@ pub(super) fn void(region: &Region<'_>, columns: &Columns) -> HashSet<usize> {
             .extend(region.rows.iter().filter(|&&row| region.view.cells(row).any(|cell| number(cell) && marked(cell))));
     }
     let timed = columns.values().all(|(_, _, v)| v.what == What::Time) && region.rows.len() <= ROWS;
+    // What passes a rule, or fails, was measured all the same: `PASS`, `FAIL`.
+    let ruled =
+        |index: usize| region.rows.iter().any(|&row| Phrase::Passed.is(&folded(region.cell(row, index).trim())));
     for (index, column) in columns.columns.iter().enumerate() {
+        if !column.heading.has(Atom::Counts) && ruled(index) {
+            continue;
+        }
         let judges = column.heading.has(Atom::Counts) || column.heading.has(Atom::Void);
         if judges && matches!(column.kind, Kind::Aside | Kind::Setting) {
             found.extend(judged(region, index, column));

@@ -96,10 +96,12 @@ pub(super) enum Phrase {
     Called,
     /// A cell repeats the one above it.
     Ditto,
+    /// What was measured keeps a rule.
+    Passed,
 }
 
 impl Phrase {
-    const ALL: [(&'static str, Self); 44] = [
+    const ALL: [(&'static str, Self); 45] = [
         ("missing", Self::Missing),
         ("about", Self::About),
         ("half", Self::Half),
@@ -144,6 +146,7 @@ impl Phrase {
         ("next", Self::Next),
         ("called", Self::Called),
         ("ditto", Self::Ditto),
+        ("passed", Self::Passed),
     ];
 
     /// The phrases of this kind, in the order of the file.

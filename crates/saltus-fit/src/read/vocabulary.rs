@@ -181,7 +181,31 @@ fn words() -> impl Iterator<Item = (&'static str, &'static [Atom])> {
     ALL.get_or_init(parsed).iter().map(|(word, atoms)| (*word, atoms.as_slice()))
 }
 
-/// The meanings of a word in lower case without accents; `None` if it is not known.
+/// What a word means that is another one without its accents: before, in Czech, Danish and Turkish,
+/// where `pred` is short for predicted, `for` says nothing and `once` counts; signs of a number, or
+/// of a mean.
+pub(super) fn accented(word: &str) -> Option<&'static [Atom]> {
+    match word {
+        "před" | "før" | "önce" => Some(&[Atom::Before]),
+        "č" | "št" => Some(&[Atom::Number]),
+        "śr" => Some(&[Atom::Mean]),
+        _ => None,
+    }
+}
+
+/// A word whose vowels with two dots are spelt by two letters: `Ruecksprung` for `Rücksprung`.
+pub(super) fn spelt_out(word: &str) -> Option<&'static [Atom]> {
+    let plain = word.replace("ae", "a").replace("oe", "o").replace("ue", "u");
+    meanings(&plain).filter(|_| plain != word)
+}
+
+/// The words without those that stand for two.
+fn single() -> impl Iterator<Item = (&'static str, &'static [Atom])> {
+    words().filter(|(word, _)| !word.contains(' '))
+}
+
+/// The meanings of a word, or of two parted by a blank, in lower case without accents; `None` if it
+/// is not known.
 pub(super) fn meanings(word: &str) -> Option<&'static [Atom]> {
     static ALL: OnceLock<HashMap<&'static str, &'static [Atom]>> = OnceLock::new();
     ALL.get_or_init(|| words().collect()).get(word).copied()
@@ -198,7 +222,7 @@ pub(super) fn nearest(word: &str) -> Option<&'static str> {
     let length = word.chars().count();
     let most = length / 3;
     let says = |(_, atoms): &(&str, &[Atom])| atoms.iter().any(|atom| *atom != Atom::Filler);
-    let near = words().filter(says).filter(|(known, _)| known.chars().count().abs_diff(length) <= most);
+    let near = single().filter(says).filter(|(known, _)| known.chars().count().abs_diff(length) <= most);
     let known = near.map(|(known, _)| (distance(word, known), known));
     known.min_by_key(|(edits, _)| *edits).filter(|(edits, _)| *edits <= most).map(|(_, known)| known)
 }
@@ -221,7 +245,7 @@ pub(super) fn misspelt(word: &str) -> Option<(&'static str, &'static [Atom])> {
             c => c,
         };
         let spelt: String = word.chars().map(letter).collect();
-        return words().find(|(known, _)| *known == spelt);
+        return single().find(|(known, _)| *known == spelt);
     }
     let letters = word.chars().count();
     if letters + 1 < MISSPELT || word.contains(|c: char| !c.is_alphabetic()) {
@@ -235,7 +259,7 @@ pub(super) fn misspelt(word: &str) -> Option<(&'static str, &'static [Atom])> {
         let long = known.chars().count();
         long >= MISSPELT && letters.abs_diff(long) < 2 && slip(word, known)
     };
-    let mut found = words().filter(near);
+    let mut found = single().filter(near);
     let first = found.next()?;
     found.all(|(_, atoms)| atoms == first.1).then_some(first)
 }
@@ -250,7 +274,7 @@ pub(super) fn short_for(word: &str) -> Option<(&'static str, &'static [Atom])> {
     if word.chars().count() < SHORT || word.contains(|c: char| !c.is_alphabetic()) {
         return None;
     }
-    let mut found = words().filter(|(known, _)| known.starts_with(word) || consonants(known).eq(word.chars()));
+    let mut found = single().filter(|(known, _)| known.starts_with(word) || consonants(known).eq(word.chars()));
     let first = found.next()?;
     let alike = |(_, atoms): (&str, &'static [Atom])| meaning(atoms).eq(meaning(first.1));
     (first.1.iter().all(|atom| atom.measures()) && found.all(alike)).then_some(first)

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use super::limits::MANY;
 use super::phrases::Phrase;
-use super::vocabulary::{Atom, first_word, folded, meanings, unparted};
+use super::vocabulary::{Atom, accented, first_word, folded, meanings, spelt_out, unparted};
 
 /// A word of a heading.
 pub(super) struct Word {
@@ -30,14 +30,26 @@ impl Word {
 /// The words of a heading, letters and digits apart.
 pub(super) fn split(text: &str) -> Vec<Word> {
     let mut words: Vec<Word> = Vec::new();
-    for piece in pieces(text) {
+    let pieces = pieces(text);
+    let count = pieces.len();
+    for (n, piece) in pieces.into_iter().enumerate() {
         let folded = folded(&piece);
+        if let Some(last) = words.last_mut()
+            && let Some(atoms) = meanings(&format!("{} {folded}", self::folded(&last.text)))
+        {
+            // Two words that mean something else together: `a doua`, `take off`.
+            last.kind = Kind::Known(atoms);
+            last.text = format!("{} {piece}", last.text);
+            continue;
+        }
         let kind = if folded == "dos" && words.last().is_some_and(|w| w.is(Atom::After) || w.text == "de") {
             // Two in Spanish, and not `of the` in Portuguese: `después de dos rebotes`.
             Kind::Unknown
-        } else if matches!(&*piece.to_lowercase(), "před" | "önce") {
-            // Before, in Czech and Turkish; `pred` is short for predicted, and `once` counts.
-            Kind::Known(&[Atom::Before])
+        } else if let Some(atoms) = accented(&piece.to_lowercase()) {
+            Kind::Known(atoms)
+        } else if folded == "av" && n > 0 && n + 1 < count {
+            // Of, in Swedish and in Norwegian; at either end it is short for the average.
+            Kind::Known(&[Atom::Filler])
         } else if Phrase::Point.is(&folded) && words.last().is_some_and(|w| w.is(Atom::Max)) {
             // `highest point`.
             Kind::Known(&[Atom::Rebound, Atom::Top])
@@ -65,6 +77,14 @@ pub(super) fn split(text: &str) -> Vec<Word> {
             continue;
         } else if words.last().is_some_and(counts) && folded.len() > 1 && Phrase::Ending.is(&folded) {
             // `n-th`, `n-ten`: the end of a letter that counts.
+            continue;
+        } else if let Some(Word { kind: kind @ Kind::Number(_), .. }) = words.last_mut()
+            && let Kind::Number(place) = *kind
+            && !folded.is_ascii()
+            && Phrase::Ending.is(&folded)
+        {
+            // `1-й`.
+            *kind = Kind::Ordinal(place);
             continue;
         } else if let Ok(n) = folded.parse::<usize>() {
             if n <= MANY { Kind::Number(n) } else { Kind::Unknown }
@@ -115,12 +135,6 @@ pub(super) fn split(text: &str) -> Vec<Word> {
         }
     }
     words
-}
-
-/// A word whose vowels with two dots are spelt by two letters: `Ruecksprung` for `Rücksprung`.
-fn spelt_out(word: &str) -> Option<&'static [Atom]> {
-    let plain = word.replace("ae", "a").replace("oe", "o").replace("ue", "u");
-    meanings(&plain).filter(|_| plain != word)
 }
 
 /// Whether a word ends in what balls are called, behind a part that says which: `hockeybal`,
@@ -237,7 +251,12 @@ pub(super) fn lettered(words: &mut [Word]) {
         last.kind = Kind::Letter;
     }
     for n in 0..words.len() {
+        // A sign that is a word of its script is no letter.
+        let sign = words[n].text.contains(unparted)
+            && matches!(words[n].kind, Kind::Known(_))
+            && !(n > 0 && words[n - 1].is(Atom::Trial));
         let one = words[n].text.chars().count() == 1 && !words[n].text.starts_with(|c: char| c.is_ascii_digit());
+        let one = one && !sign;
         let named =
             n > 0 && [Atom::Trial, Atom::Repeat, Atom::Group, Atom::Label].iter().any(|atom| words[n - 1].is(*atom));
         let counted = roman(&words[n].text);
@@ -297,6 +316,7 @@ pub(super) fn pieces(text: &str) -> Vec<String> {
     for number in ["N°", "n°", "N.º", "n.º", "Nº", "nº"] {
         spelt = spelt.replace(number, " number ");
     }
+    spelt = spelt.replace(".º", "º").replace(".ª", "ª");
     // `h'` beside `h`, `v'` beside `v`: after the impact.
     let primed = |text: &str, letter: char| {
         let mark = |c: char| matches!(c, '\'' | '′' | '’');

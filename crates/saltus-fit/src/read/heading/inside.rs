@@ -1,6 +1,8 @@
 //! What stands within a heading beside its words: a height of release, what hundredths are of, the
 //! place of a reading before or after a bounce.
 
+use std::borrow::Cow;
+
 use super::super::phrases::Phrase;
 use super::super::units::{Dimension, Scale, Unit};
 use super::super::vocabulary::{Atom, folded, meanings};
@@ -50,6 +52,17 @@ const RATES: [(&str, f64); 22] = [
     ("quadros por segundo", 1.0),
     ("beelden per seconde", 1.0),
 ];
+
+/// A text of which no colon parts the end of a number in an order from it, as in Swedish: `1:a
+/// studsen`.
+pub(super) fn swedish(text: &str) -> Cow<'_, str> {
+    let end = |at: usize| {
+        let (before, after) = (&text[..at], &text[at + 2..]);
+        before.ends_with(|c: char| c.is_ascii_digit()) && !after.starts_with(char::is_alphanumeric)
+    };
+    let found = [":a", ":e"].iter().flat_map(|mark| text.match_indices(mark)).find(|(at, _)| end(*at));
+    found.map_or(Cow::Borrowed(text), |(at, _)| Cow::Owned(format!("{}{}", &text[..at], &text[at + 1..])))
+}
 
 /// The rate of frames or samples that a text states behind a number, `Frame (240 fps)`, `44.1 kHz`,
 /// in 1/s, and the text without it.
@@ -127,7 +140,22 @@ pub(super) fn hundredths(words: &mut Vec<Word>) -> Option<bool> {
     let of = words.get(at + 1).is_some_and(|w| {
         matches!(
             &*folded(&w.text),
-            "of" | "von" | "der" | "des" | "du" | "de" | "di" | "del" | "dell" | "della" | "van"
+            "of" | "von"
+                | "der"
+                | "des"
+                | "du"
+                | "de"
+                | "da"
+                | "di"
+                | "del"
+                | "dell"
+                | "della"
+                | "van"
+                | "av"
+                | "af"
+                | "din"
+                | "od"
+                | "от"
         )
     });
     let content =

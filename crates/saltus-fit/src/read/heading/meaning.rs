@@ -96,11 +96,14 @@ impl Heading {
         let has = |atom| self.has(atom);
         let of = |dimension| self.unit.is_some_and(|unit: Unit| unit.dimension == dimension);
         let timed = has(Time) || of(Dimension::Time);
+        // How long all lasted, or until the ball was at rest: `durée jusqu'à l'arrêt`.
+        let rests = self.atoms.iter().filter(|atom| **atom == Rest).count() > 1;
+        let whole = has(Interval) && (has(Total) && !has(Air) || rests && !has(Impact)) && !has(Between);
         if has(Speed) || of(Dimension::Speed) {
             What::Speed
-        } else if has(Interval) || timed && (has(Between) || has(Air)) {
+        } else if (has(Interval) || timed && (has(Between) || has(Air))) && !whole {
             What::Interval
-        } else if timed && has(Rest) || has(Total) && !has(Height) && !of(Dimension::Length) {
+        } else if whole || timed && has(Rest) || has(Total) && !has(Height) && !of(Dimension::Length) {
             What::Total
         } else if timed && (!has(Height) || has(Time) && of(Dimension::Time)) {
             What::Time

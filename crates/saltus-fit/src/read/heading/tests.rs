@@ -36,6 +36,14 @@ fn heights_and_times_and_at_which_event() {
         ("Rebound speed (m/s)", Speed, After),
         ("the ball's height above the floor (cm)", Height, Row),
         ("time since release (s)", Time, Row),
+        ("1:a studsen (cm)", Height, Nth(1)),
+        ("2.º ressalto (cm)", Height, Nth(2)),
+        ("1-й отскок (см)", Height, Nth(1)),
+        ("a doua săritură (cm)", Height, Nth(2)),
+        ("durée totale (s)", Total, Row),
+        ("Dauer bis zum Stillstand (s)", Total, Row),
+        ("hastighed før (m/s)", Speed, Before),
+        ("höjd av studs (cm)", Height, Row),
     ] {
         let found = value(text);
         if text == "1. Rückprall" {
