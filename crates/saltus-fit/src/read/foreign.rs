@@ -299,10 +299,10 @@ impl Page {
     }
 
     fn text(&mut self, words: &str) {
-        if let Some(cell) = self.row.last_mut().filter(|_| self.open) {
-            cell.extend(words.chars().map(|c| if c.is_control() || c == '"' { ' ' } else { c }));
-        } else if (self.table.is_none() || self.caption) && !self.script && self.line.len() < MANY {
-            self.line.extend(words.chars().map(|c| if c.is_control() || c == '"' { ' ' } else { c }));
+        let outside = (self.table.is_none() || self.caption) && !self.script && self.line.len() < MANY;
+        let line = outside.then_some(&mut self.line);
+        if let Some(text) = self.row.last_mut().filter(|_| self.open).or(line) {
+            text.extend(words.chars().map(|c| if c.is_control() || c == '"' { ' ' } else { c }));
         }
     }
 

@@ -107,6 +107,18 @@ impl<'a> Grid<'a> {
         Ok(())
     }
 
+    /// Writes every cell anew, by its row and its column.
+    fn rewrite(&mut self, mut write: impl FnMut(&Self, usize, usize, &mut String)) {
+        let (mut cells, mut ends) = (String::with_capacity(self.cells.len()), Vec::with_capacity(self.ends.len()));
+        for row in 0..self.rows() {
+            for column in 0..self.width(row) {
+                write(self, row, column, &mut cells);
+                ends.push(u32::try_from(cells.len()).unwrap_or(u32::MAX));
+            }
+        }
+        (self.cells, self.ends) = (cells, ends);
+    }
+
     /// Whether a comma separates the cells, so that it is no decimal mark.
     pub(super) fn comma(&self) -> bool {
         self.delimiter == b','

@@ -196,7 +196,8 @@ fn fallen(words: &mut [Word]) {
 
 /// Whether something is let loose in a text.
 pub(super) fn lets_loose(text: &str) -> bool {
-    LOOSE.iter().any(|loose| folded(text).contains(loose)) && split(text).iter().any(|word| word.is(Atom::Release))
+    let spelt = folded(text);
+    LOOSE.iter().any(|loose| spelt.contains(loose)) && split(text).iter().any(|word| word.is(Atom::Release))
 }
 
 /// The part of a verb that stands behind what is let loose.

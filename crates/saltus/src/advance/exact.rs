@@ -184,8 +184,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             if g.abs() > (self.guard(edge, t + FAR * self.tick(t), &nudged) - g).abs() {
                 return false;
             }
-            let rounding = self.time_rounding(edge, t, &x, g) + self.guard_rounding(edge, t, &x, g, &sizes);
-            g.abs() <= ROUNDINGS * rounding
+            g.abs() <= ROUNDINGS * self.rounding(edge, t, &x, g, &sizes)
         })
     }
 

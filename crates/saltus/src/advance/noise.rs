@@ -49,7 +49,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// How far rounding the coordinates and the time may move the guard of `edge`, `g` at `x`.
     pub(super) fn still(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
         let sizes = self.sizes(x);
-        self.time_rounding(edge, t, x, g) + self.guard_rounding(edge, t, x, g, &sizes)
+        self.rounding(edge, t, x, g, &sizes)
+    }
+
+    /// The same of coordinates that were summed up from these `sizes`.
+    pub(super) fn rounding(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64, sizes: &A::State) -> f64 {
+        self.time_rounding(edge, t, x, g) + self.guard_rounding(edge, t, x, g, sizes)
     }
 
     /// How far a guard scatters by its own arithmetic: how far its values at times and states some
@@ -243,7 +248,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     fn own_rounding(&mut self, edge: A::Edge, t: f64, x: &A::State) -> f64 {
         self.memory.stats.guards += 1;
         let g = self.guard(edge, t, x);
-        self.guard_rounding(edge, t, x, g, x) + self.time_rounding(edge, t, x, g)
+        self.rounding(edge, t, x, g, x)
     }
 
     /// How far rounding may take the rate of a guard from differences over `by`.

@@ -44,8 +44,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 continue;
             }
             let g = self.guard(edge, t, &before);
-            let rounding = self.time_rounding(edge, t, &before, g) + self.guard_rounding(edge, t, &before, g, &sizes);
-            if g.abs() <= FEW * rounding {
+            if g.abs() <= FEW * self.rounding(edge, t, &before, g, &sizes) {
                 (self.memory.slack, self.memory.leapt) = (FEW * g.abs(), false);
                 return ArcEnd::Crossing { edge, time, before };
             }

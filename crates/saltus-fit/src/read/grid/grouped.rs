@@ -101,18 +101,13 @@ impl Grid<'_> {
     }
 
     fn unmark(&mut self, mark: char) {
-        let (mut cells, mut ends) = (String::with_capacity(self.cells.len()), Vec::with_capacity(self.ends.len()));
-        for row in 0..self.rows() {
-            for column in 0..self.width(row) {
-                let cell = self.cell(row, column);
-                match number(cell) {
-                    Some((number, unit)) => cells.extend([&*number.replace(mark, ""), unit]),
-                    None => cells.push_str(cell),
-                }
-                ends.push(u32::try_from(cells.len()).unwrap_or(u32::MAX));
+        self.rewrite(|grid, row, column, cells| {
+            let cell = grid.cell(row, column);
+            match number(cell) {
+                Some((number, unit)) => cells.extend([&*number.replace(mark, ""), unit]),
+                None => cells.push_str(cell),
             }
-        }
-        (self.cells, self.ends) = (cells, ends);
+        });
     }
 }
 

@@ -17,20 +17,15 @@ impl Grid<'_> {
         if !any {
             return;
         }
-        let (mut cells, mut ends): (String, Vec<u32>) = (String::new(), Vec::new());
         let mut above: Vec<String> = Vec::new();
-        for row in 0..self.rows() {
-            above.resize(above.len().max(self.width(row)), String::new());
-            for (column, last) in above.iter_mut().enumerate().take(self.width(row)) {
-                let cell = self.cell(row, column);
-                if !repeats(cell) || last.is_empty() {
-                    cell.clone_into(last);
-                }
-                cells.push_str(last);
-                ends.push(u32::try_from(cells.len()).unwrap_or(u32::MAX));
+        self.rewrite(|grid, row, column, cells| {
+            above.resize(above.len().max(column + 1), String::new());
+            let (cell, last) = (grid.cell(row, column), &mut above[column]);
+            if !repeats(cell) || last.is_empty() {
+                cell.clone_into(last);
             }
-        }
-        (self.cells, self.ends) = (cells, ends);
+            cells.push_str(last);
+        });
     }
 }
 

@@ -68,23 +68,18 @@ impl Grid<'_> {
         if found.is_empty() {
             return;
         }
-        let (mut cells, mut ends) = (String::new(), Vec::new());
-        for row in 0..self.rows() {
-            for column in 0..self.width(row) {
-                let unit = found.iter().find(|(_, (names, of, _))| row > *names && *of == column);
-                let moved = found.iter().any(|(unit, (names, ..))| *unit == column && row >= *names);
-                if !moved {
-                    cells.push_str(self.cell(row, column));
-                }
-                match unit.map(|(unit, (_, _, name))| (self.cell(row, *unit), name)) {
-                    None | Some(("", _)) => {}
-                    Some((unit, true)) => cells.push_str(&format!(" ({unit})")),
-                    Some((unit, false)) => cells.push_str(&format!(" {unit}")),
-                }
-                ends.push(u32::try_from(cells.len()).unwrap_or(u32::MAX));
+        self.rewrite(|grid, row, column, cells| {
+            let unit = found.iter().find(|(_, (names, of, _))| row > *names && *of == column);
+            let moved = found.iter().any(|(unit, (names, ..))| *unit == column && row >= *names);
+            if !moved {
+                cells.push_str(grid.cell(row, column));
             }
-        }
-        (self.cells, self.ends) = (cells, ends);
+            match unit.map(|(unit, (_, _, name))| (grid.cell(row, *unit), name)) {
+                None | Some(("", _)) => {}
+                Some((unit, true)) => cells.push_str(&format!(" ({unit})")),
+                Some((unit, false)) => cells.push_str(&format!(" {unit}")),
+            }
+        });
     }
 
     /// Parts columns whose cells hold several readings into one for each, named as trials.
