@@ -2,10 +2,10 @@
 """Exports scenes in every format, reads the files by the programs they are for, and compares heights with the simulation.
 
     cargo build --release --bin saltus
-    python3 tests/readers/check.py [target/release/saltus] [--blender] [--matrix] [--only=blender,usd]
+    python3 tests/readers/check.py [target/release/saltus] [--blender] [--matrix] [--only=blender,usd] [--rate=30]
 
 With --matrix every example scene at several frame rates, with and without squash, and a table for docs/use/motion.md at the end. With --only those readers alone,
-and contacts and sounds.
+and contacts and sounds; with --rate the rows at that frame rate alone.
 
 Needs Python and, for what each reads, Node and Chromium; what is not there is said and left out. The readers, at the versions below, are installed
 under target/readers: Pixar's USD, rlottie, Khronos' glTF validator, three.js, lottie-web, LottieFiles' dotlottie-web, and with --blender Blender 4.5 and 5.0 as
@@ -169,6 +169,11 @@ def readers(pythons, node, folder):
 
             known["dotlottie"] = dotlottie
     return known
+
+
+def rate(options):
+    """The frame rate that the options of an export ask for; 24 where they ask for none."""
+    return options[options.index("--fps") + 1] if "--fps" in options else "24"
 
 
 def length(line, words):
@@ -338,7 +343,9 @@ def main():
             print("left out, for its reader is not here: %s" % name)
         only = [flag.removeprefix("--only=").split(",") for flag in flags if flag.startswith("--only=")]
         known = {kind: read for kind, read in known.items() if not only or kind in only[0]}
-        for name, options, space in MATRIX if "--matrix" in flags else CASES:
+        rates = [flag.removeprefix("--rate=") for flag in flags if flag.startswith("--rate=")]
+        rows = MATRIX if "--matrix" in flags else CASES
+        for name, options, space in [row for row in rows if not rates or rate(row[1]) in rates]:
             for kind, animation, measured, said, bad, issues in case(saltus, folder, known, name, options, space):
                 wrong += bool(bad)
                 if said is None:
