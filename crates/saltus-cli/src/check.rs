@@ -30,7 +30,7 @@ pub(crate) struct Check {
     pub(crate) staging: Staging,
     /// How far heights may be from the motion; without it, what the export promised, and what
     /// single precision adds.
-    #[arg(long, value_name = "LENGTH", value_parser = positive(Quantity::Length))]
+    #[arg(long, value_name = "LENGTH", value_parser = positive(Quantity::Length), allow_hyphen_values = true)]
     pub(crate) tolerance: Option<f64>,
 }
 

@@ -55,7 +55,7 @@ pub(crate) struct Explain {
     #[arg(long)]
     pub(crate) cost: bool,
     /// When to stop these runs, such as `4s`; otherwise when the scene says.
-    #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time))]
+    #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time), allow_hyphen_values = true)]
     pub(crate) until: Option<f64>,
     /// How to write it; docs/use/simulating.md describes its JSON.
     #[arg(long, value_enum, default_value_t)]

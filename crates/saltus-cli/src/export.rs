@@ -8,7 +8,7 @@ use saltus_bounce::units::Quantity;
 use saltus_motion::{Format, Space, Unit, Up};
 
 use crate::error::Error;
-use crate::output::{check_new, extension, say, write};
+use crate::output::{check_apart, check_extension, check_new, extension, say, write};
 use crate::parse::{FIRST_FRAME, number, one_of, positive};
 use crate::staging::Staging;
 
@@ -44,7 +44,7 @@ pub(crate) struct Shown {
     #[command(flatten)]
     pub(crate) staging: Staging,
     /// How far keys may be from the motion where more than gravity acts.
-    #[arg(long, value_name = "LENGTH", value_parser = positive(Quantity::Length), default_value = "0.1mm")]
+    #[arg(long, value_name = "LENGTH", value_parser = positive(Quantity::Length), default_value = "0.1mm", allow_hyphen_values = true)]
     pub(crate) tolerance: f64,
     /// The unit of the file's lengths; a format that has its own refuses any other.
     #[arg(long, value_name = "UNIT", value_parser = one_of(&Unit::ALL, Unit::symbol, Unit::about), default_value = "m")]
@@ -64,6 +64,9 @@ impl Shown {
 pub(crate) fn run(args: &Export, quiet: bool) -> Result<ExitCode, Error> {
     let format = format(args)?;
     format.takes(args.shown.space()).map_err(Error::new)?;
+    let endings = Format::ALL.map(last);
+    check_extension(args.output.as_deref(), format.name(), last(format), &endings)?;
+    check_apart(args.output.as_deref(), &args.scene)?;
     check_new(args.output.as_deref(), args.force)?;
     let mut stage = args.shown.staging.of(&args.scene, args.shown.first_frame, quiet)?;
     stage.space = args.shown.space();
@@ -71,6 +74,12 @@ pub(crate) fn run(args: &Export, quiet: bool) -> Result<ExitCode, Error> {
     write(args.output.as_deref(), &file.bytes)?;
     say(quiet, &stage.says(&file));
     Ok(ExitCode::SUCCESS)
+}
+
+/// The extension of a format's files: what is behind the last dot of their ending.
+fn last(format: Format) -> &'static str {
+    let ending = format.ending();
+    ending.rsplit_once('.').map_or(ending, |(_, last)| last)
 }
 
 /// The format by name, or by the extension of the file.

@@ -86,6 +86,31 @@ pub(crate) fn check_new(path: Option<&Path>, force: bool) -> Result<(), Error> {
     }
 }
 
+/// Refuses to write over the file that is read, also where writing over files is asked for.
+pub(crate) fn check_apart(to: Option<&Path>, from: &Path) -> Result<(), Error> {
+    let real = |path: &Path| fs::canonicalize(path).ok().filter(|path| path.is_file());
+    match to {
+        Some(to) if real(to).is_some_and(|to| real(from) == Some(to)) => {
+            Err(Error::new(format!("'{}' is what is read: name another file to write", to.display())))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Refuses a file whose extension is that of another format: `own` is the extension of the one that
+/// is asked for, `all` are those that say a format.
+pub(crate) fn check_extension(to: Option<&Path>, format: &str, own: &str, all: &[&str]) -> Result<(), Error> {
+    let Some(to) = to else { return Ok(()) };
+    match extension(to) {
+        Some(said) if said != own && all.contains(&said.as_str()) => Err(Error::new(format!(
+            "'{}' is to be {format}, and its extension is that of another format: name the file '{}'",
+            to.display(),
+            to.with_extension(own).display()
+        ))),
+        _ => Ok(()),
+    }
+}
+
 /// The extension of a file, in small letters.
 pub(crate) fn extension(path: &Path) -> Option<String> {
     path.extension().map(|extension| extension.to_string_lossy().to_lowercase())

@@ -12,7 +12,7 @@ use saltus_scene::{Kind, Sampling, Scene};
 
 use crate::accuracy;
 use crate::error::Error;
-use crate::output::{check_picture, extension, say, write};
+use crate::output::{check_apart, check_extension, check_picture, extension, say, write};
 use crate::parse::{JUMPS, RATES, number, one_of, positive, quantity, target};
 use crate::scenes::{ended, ending, note, planned, scene};
 
@@ -39,16 +39,16 @@ pub(crate) struct Simulate {
     #[arg(long, value_name = "ACCELERATION", value_parser = quantity(Quantity::Acceleration), default_value = "9.81m/s^2", allow_hyphen_values = true)]
     pub(crate) gravity: f64,
     /// When to stop, such as `4s`.
-    #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time))]
+    #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time), allow_hyphen_values = true)]
     pub(crate) until: Option<f64>,
     /// After how many jumps to stop; 10000 unless given here or in the scene.
-    #[arg(long, value_name = "COUNT", value_parser = number(JUMPS))]
+    #[arg(long, value_name = "COUNT", value_parser = number(JUMPS), allow_hyphen_values = true)]
     pub(crate) most_jumps: Option<u32>,
     /// Sample the motion at this interval, such as `10ms`, for the formats `csv` and `json`.
-    #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time), conflicts_with = "fps")]
+    #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time), conflicts_with = "fps", allow_hyphen_values = true)]
     pub(crate) every: Option<f64>,
     /// Sample the motion at this many frames per second.
-    #[arg(long, value_name = "NUMBER", value_parser = number(RATES))]
+    #[arg(long, value_name = "NUMBER", value_parser = number(RATES), allow_hyphen_values = true)]
     pub(crate) fps: Option<f64>,
     /// How to write the motion; without it, after the extension of the output file, or else as
     /// text.
@@ -84,6 +84,9 @@ pub(crate) enum MotionFormat {
 pub(crate) fn run(args: &Simulate, quiet: bool) -> Result<ExitCode, Error> {
     let (format, drawn) = outputs(args)?;
     check_picture(drawn)?;
+    if let Some(from) = &args.scene {
+        check_apart(args.output.as_deref(), from)?;
+    }
     let mut scene = made(args)?;
     if let Some(note) = note(&scene) {
         say(quiet, &note);
@@ -162,7 +165,15 @@ fn outputs(args: &Simulate) -> Result<(Option<MotionFormat>, Option<&Path>), Err
     }
     let extension = output.and_then(extension);
     let format = match (args.format, extension.as_deref()) {
-        (Some(format), _) => format,
+        (Some(format), _) => {
+            let (name, own) = match format {
+                MotionFormat::Text => ("text", "txt"),
+                MotionFormat::Csv => ("csv", "csv"),
+                MotionFormat::Json => ("json", "json"),
+            };
+            check_extension(output, name, own, &["csv", "json"])?;
+            format
+        }
         (None, None | Some("txt")) => MotionFormat::Text,
         (None, Some("csv")) => MotionFormat::Csv,
         (None, Some("json")) => MotionFormat::Json,

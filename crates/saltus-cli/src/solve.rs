@@ -47,7 +47,7 @@ pub(crate) struct Solve {
     #[arg(long, value_name = "FILE")]
     pub(crate) scene: Option<PathBuf>,
     /// Frames per second, such as `24`, `29.97` or `24000/1001`.
-    #[arg(long, value_name = "RATE", default_value = "24")]
+    #[arg(long, value_name = "RATE", default_value = "24", allow_hyphen_values = true)]
     pub(crate) fps: Rate,
     /// The number of the frame at which the motion starts.
     #[arg(long, value_name = "NUMBER", default_value_t = 0, allow_hyphen_values = true, value_parser = number(FIRST_FRAME))]

@@ -25,7 +25,7 @@ const FRAMES: RangeInclusive<u32> = 1..=1000;
 #[derive(Clone, Debug, ClapArgs)]
 pub(crate) struct Staging {
     /// Frames per second, such as `24`, `29.97` or `24000/1001`.
-    #[arg(long, value_name = "RATE", default_value = "24")]
+    #[arg(long, value_name = "RATE", default_value = "24", allow_hyphen_values = true)]
     pub(crate) fps: Rate,
     /// Move every contact to a whole frame, and keep gravity or the heights.
     #[arg(long, value_enum)]
@@ -35,17 +35,17 @@ pub(crate) struct Staging {
     pub(crate) on_twos: bool,
     /// Squash the ball in contacts: the part of its height it loses in the fastest one, or `law`
     /// for what a contact that takes time says.
-    #[arg(long, value_name = "PART", value_parser = squash)]
+    #[arg(long, value_name = "PART", value_parser = squash, allow_hyphen_values = true)]
     pub(crate) squash: Option<Squash>,
     /// Stretch the ball along its velocity: the part by which it is longer at the greatest speed.
-    #[arg(long, value_name = "PART", value_parser = number(STRETCHES))]
+    #[arg(long, value_name = "PART", value_parser = number(STRETCHES), allow_hyphen_values = true)]
     pub(crate) stretch: Option<f64>,
     /// Squash and stretch so many times as much.
-    #[arg(long, value_name = "FACTOR", value_parser = number(FACTORS), default_value_t = 1.0)]
+    #[arg(long, value_name = "FACTOR", value_parser = number(FACTORS), default_value_t = 1.0, allow_hyphen_values = true)]
     pub(crate) exaggerate: f64,
     /// Hold each contact for this many frames at least; what comes after is later. Where a contact
     /// is an instant, --squash holds it for 2.
-    #[arg(long, value_name = "FRAMES", value_parser = number(FRAMES))]
+    #[arg(long, value_name = "FRAMES", value_parser = number(FRAMES), allow_hyphen_values = true)]
     pub(crate) hold: Option<u32>,
     /// Show only this hop, from one contact to the next, to be played for ever: in place, in whole
     /// frames, its end its start.
@@ -58,7 +58,7 @@ pub(crate) struct Staging {
     #[arg(long)]
     pub(crate) apexes: bool,
     /// When to stop, such as `4s`.
-    #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time))]
+    #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time), allow_hyphen_values = true)]
     pub(crate) until: Option<f64>,
 }
 

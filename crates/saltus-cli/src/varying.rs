@@ -22,10 +22,10 @@ pub(crate) struct Varying {
     variations: Vec<Variation>,
     /// Make so many runs with values drawn evenly from the ranges, evenly in the logarithm for
     /// `log`, instead of all; COUNT does not matter then.
-    #[arg(long, value_name = "COUNT", value_parser = number(1_u64..=u64::MAX))]
+    #[arg(long, value_name = "COUNT", value_parser = number(1_u64..=u64::MAX), allow_hyphen_values = true)]
     random: Option<u64>,
     /// The seed of the draws: the same seed gives the same values.
-    #[arg(long, value_name = "NUMBER", default_value_t = 1, value_parser = number(0..=u64::MAX), requires = "random")]
+    #[arg(long, value_name = "NUMBER", default_value_t = 1, value_parser = number(0..=u64::MAX), requires = "random", allow_hyphen_values = true)]
     seed: u64,
 }
 

@@ -213,6 +213,64 @@ fn files_are_whole() {
 
 #[cfg(unix)]
 #[test]
+fn what_is_read_is_not_written_over() {
+    let folder = TempDir::new().unwrap();
+    let put = |name: &str, from: &str| {
+        let path = folder.path().join(name);
+        fs::copy(root().join(from), &path).unwrap();
+        path.to_str().unwrap().to_owned()
+    };
+    let scene = put("ball.toml", "examples/scenes/squash.toml");
+    let table = put("table.csv", "examples/data/squash-on-cement.csv");
+    // By another name it is the same file.
+    let link = folder.path().join("link.toml");
+    std::os::unix::fs::symlink(&scene, &link).unwrap();
+    for to in [&scene, link.to_str().unwrap()] {
+        for command in [
+            &["export", &scene, "--to", "csv", "--force", "-o", to][..],
+            &["simulate", &scene, "--format", "csv", "-o", to],
+            &["sweep", &scene, "--format", "csv", "--force", "--vary", "restitution=0.3:0.9:3", "-o", to],
+        ] {
+            let says = refused(command);
+            assert!(says.contains("is what is read: name another file to write"), "{command:?}: {says}");
+        }
+    }
+    for command in [&["fit", &table, "-o", &table][..], &["fit", &table, "--force", "--scene", &table]] {
+        let says = refused(command);
+        assert!(says.contains("is what is read"), "{command:?}: {says}");
+    }
+    let same = |path: &str, from: &str| fs::read(path).unwrap() == fs::read(root().join(from)).unwrap();
+    assert!(same(&scene, "examples/scenes/squash.toml") && same(&table, "examples/data/squash-on-cement.csv"));
+}
+
+#[test]
+fn a_name_that_says_another_format_is_refused() {
+    let folder = TempDir::new().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let scene = root().join("examples/scenes/squash.toml");
+    let scene = scene.to_str().unwrap();
+    let vary = "restitution=0.3:0.9:3";
+    for (name, command, better) in [
+        ("ball.svg", &["export", scene, "--to", "glb"][..], "ball.glb"),
+        ("ball.lottie", &["export", scene, "--to", "lottie"], "ball.json"),
+        ("ball.PY", &["export", scene, "--to", "usd"], "ball.usda"),
+        ("ball.csv", &["simulate", scene, "--format", "json"], "ball.json"),
+        ("ball.json", &["simulate", scene, "--format", "text"], "ball.txt"),
+        ("runs.csv", &["sweep", scene, "--vary", vary, "--format", "jsonl"], "runs.jsonl"),
+    ] {
+        let file = path(name);
+        let says = refused(&[command, &["-o", &file]].concat());
+        assert!(says.contains(&format!("name the file '{}'", path(better))), "{says}");
+    }
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    // Names that several formats share, and those that say nothing, are as they are.
+    for (name, format) in [("a.svg", "chart"), ("b.json", "lottie"), ("c.csv", "contacts"), ("d.txt", "csv")] {
+        done(&["-q", "export", scene, "--to", format, "-o", &path(name)]);
+    }
+}
+
+#[cfg(unix)]
+#[test]
 fn devices_are_written_to_and_not_replaced() {
     done(&["simulate", "--drop", "1m", "--cor", "0.5", "--format", "csv", "-o", "/dev/null"]);
     assert!(!fs::metadata("/dev/null").unwrap().is_file());

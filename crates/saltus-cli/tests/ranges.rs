@@ -41,6 +41,12 @@ fn each(option: &str, unit: &str, command: impl Fn() -> Command) {
         }
         assert!(JARGON.iter().all(|word| !says.contains(word)), "{here}");
     }
+    // Behind a space a minus is the value's, and not another option; only a hop wants its `=`.
+    if option != "--loop" {
+        let value = format!("-1{unit}");
+        let says = text(&command().args([option, &value]).output().unwrap().stderr);
+        assert!(!says.contains("unexpected argument"), "{option} {value}: {says}");
+    }
 }
 
 #[test]

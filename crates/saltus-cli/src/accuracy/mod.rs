@@ -41,7 +41,7 @@ pub(crate) struct Accuracy {
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) plot: Option<PathBuf>,
     /// When to stop, such as `4s`; otherwise when the scene says.
-    #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time))]
+    #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time), allow_hyphen_values = true)]
     pub(crate) until: Option<f64>,
     /// How to write it; docs/trust/accuracy.md describes its JSON.
     #[arg(long, value_enum, default_value_t)]

@@ -41,14 +41,14 @@ pub(crate) struct Fit {
     /// Plan the measurement that gives the COR to within this, 95 %, such as `0.005`: how many
     /// drops and bounces by ruler, film or sound; with a table for the ball of that table, without
     /// one before the first drop.
-    #[arg(long, value_name = "NUMBER", value_parser = want)]
+    #[arg(long, value_name = "NUMBER", value_parser = want, allow_hyphen_values = true)]
     pub(crate) want: Option<f64>,
     /// The COR to plan for where no table tells it.
-    #[arg(long, value_name = "NUMBER", requires = "want", conflicts_with_all = ["tables", "values"], value_parser = expect, default_value = "0.75")]
+    #[arg(long, value_name = "NUMBER", requires = "want", conflicts_with_all = ["tables", "values"], value_parser = expect, default_value = "0.75", allow_hyphen_values = true)]
     pub(crate) expect: f64,
     /// The height of the drops where no table tells it, such as `1m`; that to plan for is 1 m
     /// unless it is stated.
-    #[arg(long, value_name = "LENGTH", conflicts_with = "values", value_parser = small(Quantity::Length, "m"))]
+    #[arg(long, value_name = "LENGTH", conflicts_with = "values", value_parser = small(Quantity::Length, "m"), allow_hyphen_values = true)]
     pub(crate) drop: Option<f64>,
     /// Take every file as an experiment of its own: a line for each, as a table or as JSON.
     #[arg(long, requires = "tables", conflicts_with_all = ["values", "want", "plot", "plot_cor", "plot_ladder", "plot_profile", "scene"])]
@@ -80,10 +80,10 @@ pub(crate) struct Fit {
     #[arg(long, short, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
     /// The standard error of a height reading, such as `5mm`.
-    #[arg(long, value_name = "LENGTH", value_parser = small(Quantity::Length, "mm"))]
+    #[arg(long, value_name = "LENGTH", value_parser = small(Quantity::Length, "mm"), allow_hyphen_values = true)]
     pub(crate) sigma_height: Option<f64>,
     /// The standard error of a time reading, such as `10ms`.
-    #[arg(long, value_name = "TIME", value_parser = small(Quantity::Time, "ms"))]
+    #[arg(long, value_name = "TIME", value_parser = small(Quantity::Time, "ms"), allow_hyphen_values = true)]
     pub(crate) sigma_time: Option<f64>,
     /// Gravity, such as `9.81m/s^2`, m/s² where no unit is given; used only where heights meet
     /// times.
@@ -91,16 +91,16 @@ pub(crate) struct Fit {
     pub(crate) gravity: Option<f64>,
     /// The drag coefficient k of v' = -g -+ k v² in 1/m: 0 for none, 0.016 of a squash ball, 0.13
     /// of a table-tennis ball; without it, the interval allows for that of ordinary balls.
-    #[arg(long, value_name = "NUMBER", value_parser = drag)]
+    #[arg(long, value_name = "NUMBER", value_parser = drag, allow_hyphen_values = true)]
     pub(crate) drag: Option<f64>,
     /// By how far the zero of the heights may be off, such as `2mm` (a standard error), or 0 where
     /// the ball at rest on the floor reads 0; without it, the interval allows for a ball that was
     /// read anywhere on it.
-    #[arg(long, value_name = "LENGTH", value_parser = at_least_zero(Quantity::Length, "mm"))]
+    #[arg(long, value_name = "LENGTH", value_parser = at_least_zero(Quantity::Length, "mm"), allow_hyphen_values = true)]
     pub(crate) sigma_zero: Option<f64>,
     /// By which part lengths may be wrong, such as `1%` (a standard error), or 0 where the rule was
     /// checked; used only where heights meet times.
-    #[arg(long, value_name = "PART", value_parser = part)]
+    #[arg(long, value_name = "PART", value_parser = part, allow_hyphen_values = true)]
     pub(crate) sigma_scale: Option<f64>,
     /// The unit of heights where the header names none, such as `cm`, or `px` for pixels; where
     /// every column names another, this one holds, with a warning.
@@ -129,10 +129,10 @@ pub(crate) struct Fit {
     #[arg(long, value_name = "TIME..TIME", value_parser = Sound::stretch)]
     pub(crate) listen: Option<Range<f64>>,
     /// How many frames were filmed in a second, where the table counts frames.
-    #[arg(long, value_name = "NUMBER", value_parser = number(RATES))]
+    #[arg(long, value_name = "NUMBER", value_parser = number(RATES), allow_hyphen_values = true)]
     pub(crate) fps: Option<f64>,
     /// How large one pixel is, such as `1.5mm`, or `1.371m/911` for a length that spans 911 pixels.
-    #[arg(long, value_name = "LENGTH", value_parser = scale)]
+    #[arg(long, value_name = "LENGTH", value_parser = scale, allow_hyphen_values = true)]
     pub(crate) scale: Option<f64>,
     /// What the height scale reads at the floor, in its own unit.
     #[arg(long, value_name = "NUMBER", value_parser = finite, allow_hyphen_values = true)]
@@ -165,16 +165,16 @@ pub(crate) struct Fit {
     #[arg(long, value_name = "LOSSES", num_args = 0.., require_equals = true, value_delimiter = ',', default_missing_values = Loss::ALL.map(Loss::name), value_parser = clap::builder::PossibleValuesParser::new(Loss::ALL.map(Loss::name)))]
     pub(crate) losses: Vec<String>,
     /// Trust every height to within this, such as `5mm`, and say which CORs that allows.
-    #[arg(long, value_name = "LENGTH", value_parser = small(Quantity::Length, "mm"))]
+    #[arg(long, value_name = "LENGTH", value_parser = small(Quantity::Length, "mm"), allow_hyphen_values = true)]
     pub(crate) tolerance_height: Option<f64>,
     /// Trust every time to within this, such as `1ms`, and say which CORs that allows.
-    #[arg(long, value_name = "TIME", value_parser = small(Quantity::Time, "ms"))]
+    #[arg(long, value_name = "TIME", value_parser = small(Quantity::Time, "ms"), allow_hyphen_values = true)]
     pub(crate) tolerance_time: Option<f64>,
     /// Also find the error by drawing whole trials anew so many times; needs five trials.
     #[arg(long, value_name = "ROUNDS", value_parser = clap::value_parser!(u32).range(2..))]
     pub(crate) bootstrap: Option<u32>,
     /// The seed of the draws: the same seed gives the same numbers.
-    #[arg(long, value_name = "NUMBER", default_value_t = 1, requires = "bootstrap")]
+    #[arg(long, value_name = "NUMBER", default_value_t = 1, requires = "bootstrap", allow_hyphen_values = true)]
     pub(crate) seed: u64,
     /// Exit with status 1 unless the verdict is `trusted`.
     #[arg(long)]

@@ -14,7 +14,7 @@ use saltus_fit::{CorModel, Expected, Fit, Loss, ReadOptions, Report, Table, Verd
 use saltus_plot::{PlotError, fit as pictures};
 
 use crate::error::Error;
-use crate::output::{check_new, check_picture, say, write};
+use crate::output::{check_apart, check_new, check_picture, say, write};
 use crate::parse::ReportFormat;
 use crate::progress::Progress;
 
@@ -26,6 +26,11 @@ type Draw<'a> = &'a dyn Fn(&Report) -> Option<Result<String, PlotError>>;
 pub(crate) fn run(args: &args::Fit, quiet: bool) -> Result<ExitCode, Error> {
     for picture in [&args.plot, &args.plot_cor, &args.plot_ladder, &args.plot_profile] {
         check_picture(picture.as_deref())?;
+    }
+    for (to, from) in
+        [&args.output, &args.scene].into_iter().flat_map(|to| args.tables.iter().map(move |from| (to, from)))
+    {
+        check_apart(to.as_deref(), from)?;
     }
     check_new(args.scene.as_deref(), args.force)?;
     one_to_standard_output(args)?;

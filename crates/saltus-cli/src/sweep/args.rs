@@ -52,7 +52,7 @@ pub(crate) struct Sweep {
     #[arg(long, value_name = "K/N", requires = "into", value_parser = share)]
     pub(crate) part: Option<Share>,
     /// How many rows a part has; as many as one core makes in half a second unless given.
-    #[arg(long, value_name = "COUNT", requires = "into", value_parser = number(1_u64..=u64::MAX))]
+    #[arg(long, value_name = "COUNT", requires = "into", value_parser = number(1_u64..=u64::MAX), allow_hyphen_values = true)]
     pub(crate) chunk: Option<u64>,
     /// Draw a result of the runs against the one or two keys that vary, as SVG.
     #[arg(long, value_name = "FILE")]
@@ -67,12 +67,12 @@ pub(crate) struct Sweep {
     #[arg(long)]
     pub(crate) force: bool,
     /// On how many threads to run; as many as there are cores unless given.
-    #[arg(long, visible_alias = "jobs", value_name = "COUNT", value_parser = number(1_u16..=1024))]
+    #[arg(long, visible_alias = "jobs", value_name = "COUNT", value_parser = number(1_u16..=1024), allow_hyphen_values = true)]
     pub(crate) threads: Option<u16>,
     /// When to stop each run, such as `4s`; otherwise when the scene says.
-    #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time))]
+    #[arg(long, value_name = "TIME", value_parser = positive(Quantity::Time), allow_hyphen_values = true)]
     pub(crate) until: Option<f64>,
     /// After how many jumps to stop each run; 10000 unless given here or in the scene.
-    #[arg(long, value_name = "COUNT", value_parser = number(JUMPS))]
+    #[arg(long, value_name = "COUNT", value_parser = number(JUMPS), allow_hyphen_values = true)]
     pub(crate) most_jumps: Option<u32>,
 }

@@ -26,6 +26,7 @@ const MOST_DRAWN: u64 = 100_000;
 
 pub(crate) fn run(args: &SweepArgs, quiet: bool) -> Result<ExitCode, Error> {
     let format = format(args)?;
+    output::check_apart(args.output.as_deref(), &args.scene)?;
     let (name, toml) = read(&args.scene)?;
     let vary = args.vary.vary();
     let end = ending(args.until, args.most_jumps);
@@ -133,7 +134,11 @@ fn whose(args: &SweepArgs, toml: &[u8], sweep: &Sweep<'_>, vary: &Vary, format: 
 fn format(args: &SweepArgs) -> Result<RowFormat, Error> {
     let extension = args.output.as_deref().and_then(extension);
     match (args.format, extension.as_deref()) {
-        (Some(format), _) => Ok(format),
+        (Some(format), _) => {
+            let name = format.name();
+            output::check_extension(args.output.as_deref(), name, name, &["csv", "jsonl"])?;
+            Ok(format)
+        }
         (None, None | Some("csv")) => Ok(RowFormat::Csv),
         (None, Some("jsonl" | "ndjson")) => Ok(RowFormat::Jsonl),
         (None, Some("json")) => {
