@@ -2,8 +2,8 @@
 //! [`Scene`].
 //!
 //! A scene is data, without a method to run it; every number in it has been checked, every law is
-//! made. What the keys mean, with units and defaults, is in `docs/use/scenes.md`; [`schema`] gives
-//! it to editors.
+//! made. The keys are [below](#the-keys-of-a-scene), and all of them with units and defaults in
+//! `docs/use/scenes.md` of the project; [`schema`] gives them to editors.
 //!
 //! A scene is planned, and run: a [`Record`] is all that happened. From there a few lines lead to a
 //! table, to JSON, to a file for animators, and to a picture; [`Plan::explain`], written with `{}`,
@@ -48,6 +48,54 @@
 //! A picture is `saltus_plot::record::svg(&record, Kind::Height)`, by the crate `saltus-plot` with
 //! its feature `scene`. Many runs with other values are a [`sweep`]; a scene that does what is
 //! wished for is found by [`solve`]; what accuracy costs is measured by [`accuracy`].
+//!
+//! # The keys of a scene
+//!
+//! What a scene does not name does not act. A quantity is text with a unit or a bare number in the
+//! SI unit; vectors are `[x, up]` or in space `[x, y, up]`, one or the other throughout. Keys of
+//! the top come before the first `[table]`; what is not understood is an error that says what is.
+//!
+//! ```
+//! # use saltus_scene::Scene;
+//! # use saltus_scene::plan::With;
+//! let toml = br#"
+//! gravity = "9.81 m/s^2"                 # or a name, such as "moon"; 9.80665 without it
+//! restitution = 0.75                     # or a law over the speed of impact
+//! friction = 0.4                         # turns the ball, which needs a radius
+//! buoyancy = true                        # the air lifts the ball; `added_mass` likewise
+//! drag = { coefficient = 0.5 }           # quadratic; `rate` in 1/s is linear
+//! magnus = { slope = 1 }                 # lift by spin
+//! spin_decay = { time = "20 s" }         # to 1/e
+//! air = { wind = ["-2 m/s", "0 m/s"] }   # and `density`, `viscosity`
+//! run = { until = "4 s" }                # where it would not end by itself
+//! picture = { kind = "path" }            # and `title`
+//!
+//! [ball]                                 # or [[ball]], several times, and `collisions`
+//! name = "tennis ball"
+//! radius = "33 mm"
+//! mass = "58 g"
+//! shape = "hollow"                       # "solid" without it
+//! position = ["0 m", "1 m"]              # of the centre; or `height`, of the lowest point
+//! velocity = ["20 m/s", "3 m/s"]
+//! spin = "-20 rev/s"                     # topspin is negative
+//!
+//! [[floor]]                              # without any, one level floor at height 0
+//! kind = "incline"                       # level, stairs, box, parabola, sine, polyline
+//! angle = "5 deg"
+//!
+//! [[floor]]
+//! kind = "wall"
+//! at = "12 m"
+//! restitution = 0.6                      # its own
+//! "#;
+//! let record = Scene::parse("court.toml", toml)?.plan()?.run()?;
+//! let with: Vec<With> = record.impacts().iter().take(3).map(|impact| impact.with).collect();
+//! assert_eq!(with, [With::Floor(0), With::Floor(1), With::Floor(0)]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! In place of a restitution a `contact` takes time: `contact = { law = "kelvin-voigt", cor = 0.6,
+//! time = "4 ms" }`, or Hertz's and Hunt and Crossley's laws.
 
 pub mod accuracy;
 mod air;

@@ -101,4 +101,17 @@ mod tests {
         }
         assert!(found > 40, "{found}");
     }
+
+    /// Who has the docs of the crate and nothing else finds every key of the top there.
+    #[test]
+    fn the_docs_of_the_crate_name_every_key_of_the_top() {
+        let docs = include_str!("lib.rs");
+        let docs = docs.split_once("# The keys of a scene").unwrap().1;
+        let root: serde_json::Value = serde_json::from_str(SCHEMA).unwrap();
+        for key in root["properties"].as_object().unwrap().keys() {
+            let table = format!("[{key}]");
+            let named = [format!("//! {key} = "), format!("`{key}"), table];
+            assert!(named.iter().any(|named| docs.contains(named)), "`{key}`");
+        }
+    }
 }

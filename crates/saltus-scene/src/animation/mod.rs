@@ -26,13 +26,20 @@ pub enum Squash {
 /// Settings by which a run is shown.
 ///
 /// ```
-/// use saltus_motion::{Format, Frames};
-/// use saltus_scene::{Scene, Staging};
+/// use saltus_motion::{Format, Frames, Snap};
+/// use saltus_scene::{Scene, Squash, Staging};
 /// let scene = Scene::parse("drop.toml", b"restitution = 0.5\nball = { height = '1 m', radius = '2 cm' }\n")?;
 /// let record = scene.plan()?.run()?;
-/// let stage = Staging::new(Frames::new("24".parse()?)).stage(&record)?;
-/// let file = stage.file(Format::Glb, 1e-4)?;
-/// assert!(file.bytes.starts_with(b"glTF") && stage.says(&file).contains("hops of up to"));
+/// let mut staging = Staging::new(Frames::new("24".parse()?));
+/// let file = staging.stage(&record)?.file(Format::Glb, 1e-4)?;
+/// assert!(file.bytes.starts_with(b"glTF"));
+///
+/// // Every contact on a whole frame, held for two, 30 % shorter in the fastest one.
+/// staging.snap = Some(Snap::Gravity);
+/// staging.squash = Some(Squash::Part(0.3));
+/// let stage = staging.stage(&record)?;
+/// let says = stage.says(&stage.file(Format::Glb, 1e-4)?);
+/// assert!(says.contains("farthest contact from a frame: 0.00 frames") && says.contains("0.70 of its height"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
