@@ -66,6 +66,11 @@ pub(crate) fn run(args: &Library, quiet: bool) -> Result<ExitCode, Error> {
             "{runs} motions are more than {MOST}: vary less, or draw some of them by --random 100"
         )));
     }
+    if let Some(key) = keys.iter().find(|key| args.shown.staging.gives(key)) {
+        return Err(Error::new(format!(
+            "`{key}` varies, and --{key} gives it for every motion: leave one of them out"
+        )));
+    }
     let (name, toml) = source(&args.source, quiet)?;
     check_folder(&args.output, args.force)?;
     let of_scene: Vec<&str> = keys.into_iter().filter(|key| !Staging::VARIED.contains(key)).collect();
@@ -115,7 +120,7 @@ pub(crate) fn run(args: &Library, quiet: bool) -> Result<ExitCode, Error> {
         return Err(Error::new(format!(
             "{error}; '{}' has {} whole motions and no index: --force writes all anew",
             args.output.display(),
-            motions.len().saturating_sub(1)
+            motions.len()
         )));
     }
     let index = json!({
@@ -167,6 +172,9 @@ fn source(path: &Path, quiet: bool) -> Result<(String, Vec<u8>), Error> {
 
 /// Refuses to mix the library with what is in the folder, unless it is asked for.
 fn check_folder(path: &Path, force: bool) -> Result<(), Error> {
+    if path == Path::new("-") {
+        return Err(Error::new("a library is many files, and standard output is one: name a folder"));
+    }
     match fs::read_dir(path) {
         Ok(files) => {
             if files.count() > 0 && !force {

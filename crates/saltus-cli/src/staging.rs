@@ -13,6 +13,8 @@ use crate::output::say;
 use crate::parse::{JUMPS, number, positive};
 use crate::scenes::{ended, ending, note, planned, scene};
 
+/// The frame rate unless one is given.
+const FILM: &str = "24";
 /// The parts of its height that a ball may lose, and by which it may be longer.
 const SQUASHES: RangeInclusive<f64> = 0.0..=0.9;
 const STRETCHES: RangeInclusive<f64> = 0.0..=2.0;
@@ -25,7 +27,7 @@ const FRAMES: RangeInclusive<u32> = 1..=1000;
 #[derive(Clone, Debug, ClapArgs)]
 pub(crate) struct Staging {
     /// Frames per second, such as `24`, `29.97` or `24000/1001`.
-    #[arg(long, value_name = "RATE", default_value = "24", allow_hyphen_values = true)]
+    #[arg(long, value_name = "RATE", default_value = FILM, allow_hyphen_values = true)]
     pub(crate) fps: Rate,
     /// Move every contact to a whole frame, and keep gravity or the heights.
     #[arg(long, value_enum)]
@@ -40,9 +42,9 @@ pub(crate) struct Staging {
     /// Stretch the ball along its velocity: the part by which it is longer at the greatest speed.
     #[arg(long, value_name = "PART", value_parser = number(STRETCHES), allow_hyphen_values = true)]
     pub(crate) stretch: Option<f64>,
-    /// Squash and stretch so many times as much.
-    #[arg(long, value_name = "FACTOR", value_parser = number(FACTORS), default_value_t = 1.0, allow_hyphen_values = true)]
-    pub(crate) exaggerate: f64,
+    /// Squash and stretch so many times as much; once unless given.
+    #[arg(long, value_name = "FACTOR", value_parser = number(FACTORS), allow_hyphen_values = true)]
+    pub(crate) exaggerate: Option<f64>,
     /// Hold each contact for this many frames at least; what comes after is later. Where a contact
     /// is an instant, --squash holds it for 2.
     #[arg(long, value_name = "FRAMES", value_parser = number(FRAMES), allow_hyphen_values = true)]
@@ -101,9 +103,25 @@ impl Staging {
             SnapBy::Heights => Snap::Heights,
         });
         (staging.squash, staging.stretch) = (self.squash, self.stretch.unwrap_or(0.0));
-        (staging.exaggerate, staging.hold) = (self.exaggerate, self.hold);
+        (staging.exaggerate, staging.hold) = (self.exaggerate.unwrap_or(1.0), self.hold);
         (staging.looped, staging.mirror, staging.apexes) = (self.looped, self.mirror, self.apexes);
         staging
+    }
+
+    /// Whether one of [`Staging::VARIED`] is given, to something else than what it is without.
+    pub(crate) fn gives(&self, option: &str) -> bool {
+        match option {
+            "fps" => self.fps.to_string() != FILM,
+            "snap" => self.snap.is_some(),
+            "on-twos" => self.on_twos,
+            "squash" => self.squash.is_some(),
+            "stretch" => self.stretch.is_some(),
+            "exaggerate" => self.exaggerate.is_some(),
+            "hold" => self.hold.is_some(),
+            "loop" => self.looped.is_some(),
+            "mirror" => self.mirror,
+            _ => false,
+        }
     }
 
     /// Sets one of [`Staging::VARIED`] to what would stand behind it.
@@ -116,7 +134,7 @@ impl Staging {
             "mirror" => self.mirror = switch()?,
             "squash" => self.squash = Some(squash(value)?),
             "stretch" => self.stretch = Some(number(STRETCHES)(value)?),
-            "exaggerate" => self.exaggerate = number(FACTORS)(value)?,
+            "exaggerate" => self.exaggerate = Some(number(FACTORS)(value)?),
             "hold" => self.hold = Some(number(FRAMES)(value)?),
             "loop" => self.looped = Some(number(JUMPS)(value)?),
             _ => return Err(format!("'{option}' is no way to show a motion")),

@@ -12,7 +12,7 @@ use std::path::Path;
 use saltus_scene::Scene;
 use serde_json::Value;
 use tempfile::TempDir;
-use tool::root;
+use tool::{done, refused, root};
 
 fn saltus(arguments: &[&str]) -> (Option<i32>, String, String) {
     let output = tool::saltus().args(arguments).output().unwrap();
@@ -204,4 +204,48 @@ fn from_a_table_to_an_animation() {
         saltus(&["library", &table, "--vary", "gravity=earth,moon", "--to", "svg", "-o", &path("lib")]);
     assert_eq!(status, Some(0), "{said}");
     assert_eq!(names(&path("lib")).len(), 3);
+}
+
+#[test]
+fn what_contradicts_itself_is_refused() {
+    let folder = TempDir::new().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let scene = root().join("examples/scenes/squash.toml");
+    let scene = scene.to_str().unwrap();
+    let to = path("lib");
+    let library = ["library", scene, "--to", "csv", "-o", &to, "--vary"];
+    for (varied, given) in [
+        ("fps=24,25", &["--fps", "30"][..]),
+        ("snap=gravity,heights", &["--snap", "gravity"]),
+        ("on-twos=true,false", &["--on-twos"]),
+        ("squash=0.1,0.2", &["--squash", "0.3"]),
+        ("stretch=0.1,0.2", &["--stretch", "0.1"]),
+        ("exaggerate=1,2", &["--exaggerate", "1"]),
+        ("hold=1,2", &["--hold", "3"]),
+        ("loop=1,2", &["--loop"]),
+        ("mirror=true,false", &["--mirror"]),
+        ("run.until=1,2", &["--until", "3s"]),
+    ] {
+        let key = varied.split('=').next().unwrap();
+        let says = refused(&[&library, &[varied][..], given].concat());
+        assert!(says.contains(&format!("`{key}`")) && says.contains("leave one of them out"), "{says}");
+    }
+    let dash = ["library", scene, "--to", "csv", "-o", "-", "--vary", "fps=24,25"];
+    assert!(refused(&dash).contains("name a folder"));
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    done(&[&library, &["fps=24,25"][..]].concat());
+}
+
+#[cfg(unix)]
+#[test]
+fn a_library_that_breaks_off_counts_what_is_whole() {
+    let folder = TempDir::new().unwrap();
+    let to = folder.path().join("lib");
+    // A folder stands where the third motion is to go.
+    fs::create_dir_all(to.join("2-restitution=0.6.csv")).unwrap();
+    let scene = root().join("examples/scenes/squash.toml");
+    let (scene, to) = (scene.to_str().unwrap(), to.to_str().unwrap());
+    let says =
+        refused(&["-q", "library", scene, "--vary", "restitution=0.4:0.8:5", "--to", "csv", "--force", "-o", to]);
+    assert!(says.contains("has 2 whole motions and no index"), "{says}");
 }

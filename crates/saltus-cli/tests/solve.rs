@@ -142,6 +142,19 @@ fn contradictions_are_named() {
 }
 
 #[test]
+fn of_several_balls_one_is_named() {
+    let scene = tool::root().join("examples/scenes/stacked.toml");
+    let scene = scene.to_str().unwrap();
+    let said = refused(&["touch 1 at 1s", "--free", "throw", "--scene", scene]);
+    assert!(
+        said.contains("'throw' is of one ball, and the scene has a list") && said.contains("`ball.0.velocity`"),
+        "{said}"
+    );
+    let (_, said) = solved(&["touch 1 at 1s", "--free", "ball.0.height", "--scene", scene]);
+    assert!(said.contains("ball.0.height = "), "{said}");
+}
+
+#[test]
 fn what_is_no_wish_is_said() {
     for (wish, says) in [
         ("bounce 1 at 1s", "begins with touch, apex, hop or rest"),

@@ -178,6 +178,10 @@ fn what_is_wrong_is_said_before_anything_is_written() {
         assert!(said.contains(says), "{vary}: {said}");
         assert!(!place.path("rows.csv").exists(), "{vary}");
     }
+    for (vary, option) in [("run.until=1s,2s", "--until=3s"), ("run.most_jumps=5,6", "--most-jumps=9")] {
+        let said = place.refused(&["--vary", vary, option, "-o", "rows.csv"]);
+        assert!(said.contains("given for every run as well"), "{vary}: {said}");
+    }
     let said = place.refused(&["--vary", "restitution=0.1,0.2", "--vary", "restitution=0.1,0.2"]);
     assert!(said.contains("`restitution` varies twice"), "{said}");
     let said = place.refused(&["--vary", "restitution=0:1:1000000", "--vary", "ball.height=1:2:10000000"]);

@@ -22,6 +22,17 @@ pub struct Run {
 }
 
 impl Run {
+    /// Whether these settings have what a scene file has under this key.
+    pub(super) fn gives(&self, key: &str) -> bool {
+        match key {
+            "run.until" => self.until.is_some(),
+            "run.tolerance" => self.tolerance.is_some(),
+            "run.most_jumps" => self.most_jumps.is_some(),
+            "run.stepper" => self.stepper.is_some(),
+            _ => false,
+        }
+    }
+
     /// These settings, and those of `other` where these say nothing.
     pub(super) fn or(self, other: Self) -> Self {
         Self {

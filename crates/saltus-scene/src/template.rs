@@ -58,7 +58,8 @@ impl<'a> Template<'a> {
     /// is as in the file. The settings in `run` go before those of the file.
     ///
     /// # Errors
-    /// As [`Scene::parse`]; a message about a value that was set shows that value.
+    /// As [`Scene::parse`], and where `run` has what is set under a key; a message about a value
+    /// that was set shows that value.
     pub fn scene(&self, values: &[&str], run: Run) -> Result<Scene, SceneError> {
         self.made(values, run).map_err(|fault| self.explained(values, fault))
     }
@@ -67,6 +68,10 @@ impl<'a> Template<'a> {
         let mut table: Spanned<DeTable<'_>> = self.table.clone();
         for (n, (key, value)) in self.keys.iter().zip(values).enumerate() {
             let mark = self.mark(n);
+            if run.gives(key) {
+                let says = format!("`{key}` is set, and given for every run as well: leave one of them out");
+                return Err(Fault::new(mark..mark + 1, says));
+            }
             let at = mark + 1..mark + 2;
             let value = DeValue::parse(value).map_err(|_| {
                 Fault::new(at.clone(), "this is no value: write a number, text in quotes, or true or false")

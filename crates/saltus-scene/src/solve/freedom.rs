@@ -78,8 +78,16 @@ impl Freedom {
         let value: Value = if self.unit.is_empty() { value.into() } else { format!("{value} {}", self.unit).into() };
         let (last, way) = self.path.split_last().ok_or_else(fail)?;
         let mut item = file.as_item_mut();
-        for key in way {
+        for (n, key) in way.iter().enumerate() {
             item = child(item, key, || Item::Table(Table::new())).ok_or_else(fail)?;
+            let next = self.path.get(n + 1).filter(|next| next.parse::<usize>().is_err());
+            if let (Item::ArrayOfTables(_) | Item::Value(Value::Array(_)), Some(_)) = (&*item, next) {
+                let (list, rest) = (self.path[..=n].join("."), self.path[n + 1..].join("."));
+                return Err(format!(
+                    "'{}' is of one {list}, and the scene has a list: name one of it, such as `{list}.0.{rest}`, once that is in the scene",
+                    self.name
+                ));
+            }
         }
         let slot = child(item, last, || Item::Value(0.into())).ok_or_else(fail)?;
         let decor = slot.as_value().map(|old| old.decor().clone());
