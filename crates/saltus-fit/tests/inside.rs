@@ -21,6 +21,7 @@ fn files() -> Vec<PathBuf> {
             .into_iter()
             .chain([
                 "read/said.rs",
+                "read/words.rs",
                 "read/forms.rs",
                 "read/forms/values.rs",
                 "read/order.rs",

@@ -230,7 +230,18 @@ pub(super) fn of_clauses(text: &str) -> Option<Unit> {
         (plain && matches!(unit.dimension, Dimension::Length | Dimension::Time)).then_some(unit)
     };
     let parts = || clauses(text).chain(dashed(text)).find_map(named);
-    unit(text).or_else(parts).or_else(of_brackets).or_else(ends)
+    unit(text).or_else(parts).or_else(of_brackets).or_else(ends).or_else(|| begun(text))
+}
+
+/// The unit of the quantity that a text begins with, whatever stands behind it: `Rebound heights in
+/// cm of a ball dropped from 2 m`; but of no quantity at a release.
+fn begun(text: &str) -> Option<Unit> {
+    let ends = text.char_indices().filter(|(_, c)| c.is_whitespace()).map(|(at, _)| text.split_at(at));
+    // Before a unit the inch is a preposition.
+    let whole = |rest: &str| rest.split_whitespace().next().is_none_or(|next| Unit::parse(next).is_none());
+    let (found, rest) = ends.filter(|(_, rest)| whole(rest)).find_map(|(head, rest)| Some((unit(head)?, rest)))?;
+    let released = split(rest).iter().any(|word| word.is(Atom::Release)) && !measures(rest);
+    (!released && !split(rest).iter().any(turns)).then_some(found)
 }
 
 /// `Uncertainty in heights: ±1 cm`: the standard error of all readings of a dimension, in SI units.
@@ -314,12 +325,19 @@ pub(super) fn states_length(text: &str) -> bool {
 
 /// Whether a length stands in a text.
 fn measures(text: &str) -> bool {
+    !lengths(text).is_empty()
+}
+
+/// The lengths that stand in a text, m.
+pub(super) fn lengths(text: &str) -> Vec<f64> {
     let words: Vec<&str> =
         text.split_whitespace().map(|word| word.trim_matches(['(', ')', ',', ';', ':', '='])).collect();
-    let length = |unit: Option<Unit>| unit.is_some_and(|u| u.dimension == Dimension::Length && !u.unscaled());
-    let measured = |text: &str| matches!(cell::read(text, false), Cell::Number(m) if length(m.unit));
-    words.iter().any(|word| measured(word))
-        || words.windows(2).any(|pair| pair[0].ends_with(|c: char| c.is_ascii_digit()) && measured(&pair.join(" ")))
+    let length = |text: &str| match cell::read(text, false) {
+        Cell::Number(m) => m.unit.filter(|u| u.dimension == Dimension::Length && !u.unscaled()).map(|u| u.si(m.value)),
+        _ => None,
+    };
+    let apart = words.windows(2).filter(|pair| pair[0].ends_with(|c: char| c.is_ascii_digit()));
+    words.iter().filter_map(|word| length(word)).chain(apart.filter_map(|pair| length(&pair.join(" ")))).collect()
 }
 
 #[cfg(test)]
@@ -402,6 +420,9 @@ mod tests {
             ("peak height in metres (first number = where it was dropped)", Some(1.0)),
             ("(cm, read at the bottom of the ball)", Some(0.01)),
             ("(m, read by Ann)", None),
+            ("Rebound height in cm of a zorb dropped from 2 m", Some(0.01)),
+            ("Rebound height in cm of the release", None),
+            ("Rebound height in cm predicted by Ann", None),
         ] {
             assert_eq!(of_clauses(text).map(|unit| unit.si(1.0)), metres, "{text}");
         }

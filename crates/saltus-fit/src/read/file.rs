@@ -143,8 +143,12 @@ fn joined_up<'a>(
                 let placed = |r: &Reading| r.height.is_some() && r.event != Event::Sample;
                 let placed = !table.metadata.speeds && table.trials.iter().any(|t| t.readings.iter().any(placed));
                 table.doubts.extend(datum.filter(|_| placed).and_then(Datum::doubt));
-                let length = title.length.clone().filter(|_| !answered && placed);
-                table.doubts.extend(length.map(|(text, line)| Doubt::Length { text, line }));
+                // What the table states as well is read: `dropped from 180 cm` above a release of 180.
+                let readings = || table.trials.iter().flat_map(|t| &t.readings);
+                let released = |m: &f64| readings().any(|r| r.event == Event::Release && r.height == Some(*m));
+                let length = title.length.as_ref().filter(|(_, _, lengths)| !lengths.iter().all(released));
+                let length = length.filter(|_| !answered && placed);
+                table.doubts.extend(length.map(|(text, line, _)| Doubt::Length { text: text.clone(), line: *line }));
                 parts.push((region.label.clone(), table));
             }
             // A table beside another, of something else.
@@ -160,6 +164,10 @@ fn joined_up<'a>(
     if let Some(error) = failed.or(nothing.filter(|_| parts.is_empty())) {
         return Err(error);
     }
+    // Means of the drops of another table of the text, and ratios of its heights, follow from these.
+    let derived = pool::measured(&mut parts, |(_, table)| table);
+    let names = derived.into_iter().filter_map(|(_, table)| Some(table.trials.first()?.readings.first()?.line));
+    aside.extend(names.map(|line| LeftAside::new(Kind::Text, "a table", Why::Derived).at(line)));
     named(&regions, &titles, &mut parts);
     let still = if tracks { leave_still(&mut parts) } else { Vec::new() };
     if tracks && at_once(&parts) {

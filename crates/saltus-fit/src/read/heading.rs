@@ -3,12 +3,13 @@
 
 mod inside;
 mod meaning;
+mod repeats;
 
 use super::aside::Why;
 use super::units::{Dimension, Scale, Unit};
 use super::vocabulary::{Atom, folded, misspelt, narrow, short_for};
 use super::words::{Kind, Word, numbers, split, unaddressed};
-pub(super) use inside::{DropHeight, Of, rate, release, released};
+pub(super) use inside::{DropHeight, Of, is_sign, rate, release, released};
 
 /// What the numbers of a column measure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -75,6 +76,22 @@ pub(super) struct Value {
     pub(super) or_trial: bool,
     /// The height that the heading says the ball was dropped from.
     pub(super) drop: Option<DropHeight>,
+}
+
+impl Value {
+    /// Readings of which the row tells the event.
+    pub(super) fn of(what: What) -> Self {
+        Self {
+            what,
+            at: At::Row,
+            role: Role::Reading,
+            trial: String::new(),
+            group: String::new(),
+            position: false,
+            or_trial: false,
+            drop: None,
+        }
+    }
 }
 
 /// What a heading says of its column.
@@ -158,9 +175,15 @@ impl Heading {
         if let Some(sign) = inside::computed(text) {
             return Self::parse(&format!("calculated {sign}")).called(name);
         }
+        // A condition by itself tells its column from the others: `21 °C`.
+        if inside::of_a_condition(text) {
+            let value = Value { group: text.to_owned(), ..Value::of(What::Unsaid) };
+            return Self { meaning: Meaning::Value(value), ..heading };
+        }
         // Programs put the run before the name: 'Latest: Time (s)'.
         let spelt = inside::swedish(text);
-        let text = spelt.as_ref();
+        let sized = repeats::without_size(&spelt);
+        let text = sized.as_ref();
         let (run, name) = match text.split_once(':') {
             Some((run, name)) if !name.trim().is_empty() && !run.contains(['(', '[']) => (run.trim(), name),
             _ => ("", text),
@@ -180,6 +203,7 @@ impl Heading {
             heading.unit = Unit::parse("%");
         }
         heading.respell(&mut words);
+        repeats::take(&mut words, &bare, false);
         heading.take_unit_word(&mut words);
         heading.of_trials(&mut words);
         heading.unknown = words.iter().filter(|w| matches!(w.kind, Kind::Unknown)).map(|w| w.text.clone()).collect();
@@ -318,6 +342,14 @@ impl Heading {
         self.labels.join(" ")
     }
 
+    /// Whether it says of which trial its readings are, or that they are a mean, and nothing else
+    /// but their unit.
+    pub(super) fn trial_only(&self) -> bool {
+        use Atom::{Filler, Mean, Number, Repeat, Trial};
+        let key = |atom: &Atom| matches!(atom, Trial | Repeat | Number | Mean | Filler);
+        self.unknown.is_empty() && !self.atoms.is_empty() && self.atoms.iter().all(key)
+    }
+
     /// The trial that its words name.
     pub(super) fn trial(&self) -> String {
         numbers(&split(&self.text)).trial
@@ -424,11 +456,11 @@ impl Heading {
                 || inside::asks_for_unit(inside))
             {
                 // A symbol behind a name is what the name is, and names nothing itself: `drop [H]`.
-                left.push_str(match inside {
-                    "h" | "H" if !left.trim().is_empty() => "height",
-                    "v" | "V" if !left.trim().is_empty() => "speed",
-                    inside => inside,
-                });
+                match inside {
+                    "h" | "H" if !left.trim().is_empty() => left.push_str("height"),
+                    "v" | "V" if !left.trim().is_empty() => left.push_str("speed"),
+                    inside => left.push_str(&repeats::without(inside)),
+                }
                 left.push(' ');
             }
         }

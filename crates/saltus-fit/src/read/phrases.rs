@@ -36,6 +36,8 @@ pub(super) enum Phrase {
     Value,
     /// How many readings a mean is of, from two on.
     Count,
+    /// The same in other languages, in any order.
+    Several,
     /// Between a height and the next.
     Versus,
     /// The ball is let go.
@@ -101,7 +103,7 @@ pub(super) enum Phrase {
 }
 
 impl Phrase {
-    const ALL: [(&'static str, Self); 45] = [
+    const ALL: [(&'static str, Self); 46] = [
         ("missing", Self::Missing),
         ("about", Self::About),
         ("half", Self::Half),
@@ -116,6 +118,7 @@ impl Phrase {
         ("in", Self::In),
         ("value", Self::Value),
         ("count", Self::Count),
+        ("several", Self::Several),
         ("versus", Self::Versus),
         ("let go", Self::LetGo),
         ("contact", Self::Contact),

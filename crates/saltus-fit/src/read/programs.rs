@@ -59,8 +59,8 @@ pub(super) fn tables<'a>(
     if let Some(found) = tracker(view, options) {
         return Ok(found);
     }
-    if let Some(region) = labels(view) {
-        return Ok(Recognised { program: Some(Program::Labels), regions: vec![region], tracks: false });
+    if let Some(regions) = labels(view) {
+        return Ok(Recognised { program: Some(Program::Labels), regions, tracks: false });
     }
     if numbers(view, 0) {
         let named = || filed::table(view).filter(|_| options.fps.is_none() && options.height_unit.is_none());
@@ -136,8 +136,9 @@ fn given<'a>(view: View<'a>, names: &[String]) -> Region<'a> {
 }
 
 /// A track of labels as Audacity writes it, `start, end, text` a line without a header: the labels
-/// stand at the contacts, or those that say so where another lasts longer than one.
-fn labels(view: View<'_>) -> Option<Region<'_>> {
+/// stand at the contacts, or those that say so where another lasts longer than one. Several drops
+/// are told apart by what stands before their contacts, `drop 2 hit 1`.
+fn labels(view: View<'_>) -> Option<Vec<Region<'_>>> {
     let label = |row: usize| {
         let text = view.cell(row, 2);
         view.width(row) == 3
@@ -166,8 +167,37 @@ fn labels(view: View<'_>) -> Option<Region<'_>> {
         let others = (0..rows).filter(|row| !used.contains(row));
         let aside = |row: usize| LeftAside::new(Part::Row, view.cell(row, 2), Why::Other).at(view.line(row, 0));
         region.aside.extend(others.map(aside));
-        region
+        let drops = of_drops(view, &used);
+        match drops.as_slice() {
+            [] | [_] => vec![region],
+            _ => drops.into_iter().map(|(label, rows)| Region { label, rows, ..region.clone() }).collect(),
+        }
     })
+}
+
+/// The rows of each drop by its name, where every label is that and a contact, one drop behind the
+/// other; none where they are not.
+fn of_drops(view: View<'_>, rows: &[usize]) -> Vec<(String, Vec<usize>)> {
+    let contact = |text: &str| {
+        let heading = Heading::parse(text);
+        heading.unknown.is_empty() && (heading.has(Atom::Impact) || heading.has(Atom::Rebound))
+    };
+    // `drop 2 hit 1`, `drop2 hit1`, `marble hit 3`.
+    let name = |row: &usize| {
+        let text = view.cell(*row, 2);
+        let mut ends = text.match_indices(' ').map(|(at, _)| text.split_at(at));
+        ends.find(|(name, rest)| contact(rest) && !contact(name)).map(|(name, _)| name.to_owned())
+    };
+    let Some(names) = rows.iter().map(name).collect::<Option<Vec<String>>>() else { return Vec::new() };
+    let mut found: Vec<(String, Vec<usize>)> = Vec::new();
+    for (name, &row) in names.into_iter().zip(rows) {
+        match found.last_mut().filter(|(last, _)| *last == name) {
+            Some((_, rows)) => rows.push(row),
+            None => found.push((name, vec![row])),
+        }
+    }
+    let apart = (0..found.len()).all(|n| found[..n].iter().all(|(name, _)| *name != found[n].0));
+    if apart { found } else { Vec::new() }
 }
 
 /// `Frame X1 Y1 Flag1 X2 Y2 Flag2`, a line `Tracks 1 to 2`, frames, and a summary below them.

@@ -1,6 +1,8 @@
 //! Where in a text its tables lie: which lines name the columns, and which rows stand below them.
 
+mod counted;
 mod header;
+mod legend;
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -14,6 +16,7 @@ use super::units::{Dimension, Unit};
 use crate::error::TableError;
 pub(super) use header::repeated;
 use header::{Header, SHARE, VALUE, both, headers, names_only, of_units, remark};
+use legend::Legend;
 
 /// One table of a text.
 #[derive(Clone)]
@@ -128,8 +131,8 @@ const HEAD: usize = 60;
 /// The tables of a view, each below the names of its columns; none where no names are understood.
 pub(super) fn tables<'a>(view: View<'a>) -> Vec<Region<'a>> {
     let (mut found, mut from): (Vec<Region<'a>>, usize) = (Vec::new(), 0);
-    let end = view.rows();
-    while let Some(header) = next_header(view, from, end, found.last()) {
+    let (end, legend) = (view.rows(), Legend::of(view));
+    while let Some(header) = next_header(view, &legend, from, end, found.last()) {
         let above = texts(view, from..header.at);
         if let Some(last) = found.last_mut() {
             last.rows.retain(|row| *row < header.at);
@@ -188,7 +191,13 @@ fn texts(view: View<'_>, span: Range<usize>) -> Vec<LeftAside> {
 }
 
 /// The best header from row `from` on; below a table the next, which has to be as good as a first.
-fn next_header(view: View<'_>, from: usize, end: usize, before: Option<&Region<'_>>) -> Option<Header> {
+fn next_header(
+    view: View<'_>,
+    legend: &Legend,
+    from: usize,
+    end: usize,
+    before: Option<&Region<'_>>,
+) -> Option<Header> {
     let mut best: Option<Header> = None;
     let last = if before.is_some() { end } else { end.min(from + HEAD) };
     // A name by itself names no rows of several cells.
@@ -209,7 +218,7 @@ fn next_header(view: View<'_>, from: usize, end: usize, before: Option<&Region<'
         if before.is_some_and(|b| remark(view, row, &b.header) && wide(row)) {
             continue;
         }
-        for header in headers(view, row, end) {
+        for header in headers(view, legend, row, end).into_iter().chain(counted::header(view, row, end)) {
             // Below a table a single word, or names without rows, are no header.
             let next = before.is_none() || numbers(header.below);
             let least = if before.is_some() { VALUE } else { SHARE };

@@ -58,8 +58,11 @@ impl Columns {
         let same = |a: &Value, b: &Value| a.what == b.what || a.what == What::Unsaid || b.what == What::Unsaid;
         let placed = |a: &Value, b: &Value| (a.at == At::Release) == (b.at == At::Release);
         let role = |v: &Value, role: Role| v.role == role;
-        let beside = |v: &Value| {
-            values.iter().any(|(_, o)| role(o, Role::Reading) && same(o, v) && (placed(o, v) || !o.trial.is_empty()))
+        // Hundredths follow from heights, and are none that a mean of heights sums up.
+        let parts: Vec<bool> = self.columns.iter().map(Column::of_hundredths).collect();
+        let beside = |index: usize, v: &Value| {
+            let of = |n: usize, o: &Value| role(o, Role::Reading) && same(o, v) && (parts[index] || !parts[n]);
+            values.iter().any(|(n, o)| of(*n, o) && (placed(o, v) || !o.trial.is_empty()))
         };
         // A mean stands for the readings between its extremes.
         let within = |v: &Value| values.iter().any(|(_, o)| role(o, Role::Mean) && same(o, v) && placed(o, v));
@@ -69,14 +72,14 @@ impl Columns {
                 Role::Max if tops && matches!(value.what, What::Time | What::Height) => self.read(*index),
                 Role::Reading => {}
                 Role::Mean | Role::Max | Role::Min if self.of_no_other(region, *index, &values) => self.read(*index),
-                Role::Mean if beside(value) => self.leave(*index, Why::Statistic),
+                Role::Mean if beside(*index, value) => self.leave(*index, Why::Statistic),
                 Role::Mean => self.read(*index),
                 Role::Error => self.error(*index, value, &values),
                 Role::Max | Role::Min => {
                     let other = if value.role == Role::Max { Role::Min } else { Role::Max };
                     let pair = values.iter().find(|(_, o)| role(o, other) && same(o, value) && o.at == value.at);
                     match pair {
-                        _ if beside(value) || within(value) => self.leave(*index, Why::Statistic),
+                        _ if beside(*index, value) || within(value) => self.leave(*index, Why::Statistic),
                         Some((low, _)) if value.role == Role::Max => self.columns[*index].kind = Kind::High(*low),
                         Some(_) => self.read(*index),
                         // The greatest height between two bounces is that of the apex.
@@ -88,7 +91,7 @@ impl Columns {
                 }
                 Role::Lost => {
                     let drop = values.iter().any(|(_, o)| role(o, Role::Reading) && o.at == At::Release);
-                    if beside(value) {
+                    if beside(*index, value) {
                         self.leave(*index, Why::Derived);
                     } else if drop && (!self.number().is_some_and(|(_, sure)| sure) || self.own_drops(region)) {
                         self.columns[*index].kind = Kind::Lost;

@@ -13,7 +13,7 @@ use super::phrases::Phrase;
 use super::region::Region;
 use super::units::{Dimension, Scale};
 use super::vocabulary::{Atom, ROWS, folded, misspelt};
-use super::words::{Kind, Word, pieces, split};
+use super::words::{ARTICLE, Kind, Word, pieces, split};
 use crate::error::TableError;
 use crate::finding::Doubt;
 use crate::quantity::Ball;
@@ -130,16 +130,17 @@ fn turned_round(region: &Region<'_>, columns: &Columns) -> bool {
     turns.len() >= ALIKE && turns.iter().all(|turns| *turns)
 }
 
-/// Whether speeds on the way to something stand beside those on the way back, which are lower in
-/// every row, of which there are several.
+/// Whether speeds on the way to something stand beside those on the way back, or those of a ball
+/// going down beside those going up, which are lower in every row, of which there are several.
 fn in_and_out(region: &Region<'_>, columns: &Columns) -> bool {
     let named = |phrase: Phrase, at: At| {
         let names = |c: &Column| pieces(&c.heading.text).iter().any(|word| phrase.is(&folded(word)));
         columns.values().find(|(_, c, v)| v.what == What::Speed && v.at == at && names(c)).map(|(n, _, _)| n)
     };
-    let Some((to, back)) = named(Phrase::Inwards, At::Before).zip(named(Phrase::Outwards, At::After)) else {
-        return false;
-    };
+    let met = named(Phrase::Inwards, At::Before).zip(named(Phrase::Outwards, At::After));
+    let falls_and_rises = || named(Phrase::Down, At::Before).zip(named(Phrase::UpTo, At::After));
+    let of_ball = || falls_and_rises().filter(|_| texts(region).any(names_ball));
+    let Some((to, back)) = met.or_else(of_ball) else { return false };
     let number = |row: usize, n: usize| region.view.number(row, n).map(f64::abs);
     let falls = |&row: &usize| Some(number(row, back)? < number(row, to)?);
     let falls: Vec<bool> = region.rows.iter().filter_map(falls).collect();
@@ -257,9 +258,6 @@ fn plain(heading: &Heading) -> bool {
     };
     of_bounces || heading.has(Atom::Read) || words.iter().all(bare)
 }
-
-/// Words that say nothing and are longer than this name something.
-const ARTICLE: usize = 4;
 
 /// The doubt whether the heights are those that were read, where they are not plainly the heights,
 /// and a column that is not understood is called one too, or rises and falls with them from row to

@@ -37,6 +37,7 @@ pub(super) fn text<'a>(name: &str, bytes: &'a [u8]) -> Result<Text<'a>, TableErr
     };
     let taken = |text: Cow<'a, str>, form: fn(&str) -> Option<String>| form(&text).map_or(text, Cow::Owned);
     let around = [
+        wrapped::headed,
         wrapped::repeated,
         forms::dumped,
         wrapped::pictured,
@@ -66,12 +67,14 @@ pub(super) fn counted(text: &str) -> Option<String> {
     })
 }
 
-/// Where lines begin with a `#` that is a cell, and no comment: `#,time (s)`, or `#,cm` below the
-/// names.
+/// Where lines begin with a `#` that is of a cell, and no comment: `#,time (s)`, `#1,64`, or `#,cm`
+/// below the names.
 fn numeros(text: &str) -> Vec<usize> {
     let cell = |at: &usize| {
         let after = text[*at..].strip_prefix('#').map(|after| after.trim_start_matches(' '));
-        after.is_some_and(|after| after.starts_with([',', ';', '\t']))
+        // `#1` counts a row.
+        let bare = after.map(|after| after.trim_start_matches(|c: char| c.is_ascii_digit()));
+        bare.is_some_and(|after| after.starts_with([',', ';', '\t']))
     };
     let starts = text.match_indices('\n').map(|(at, _)| at + 1);
     let first = text.find(|c: char| !c.is_whitespace());
@@ -127,7 +130,7 @@ fn aligned(text: &str) -> Option<String> {
     let width = rows().next().map_or(0, |line| line.split_whitespace().count());
     let spaced = |line: &str| line.starts_with(' ') || line.trim().contains("  ") || bracketed(line, width).is_some();
     let of_numbers = width > 1
-        && !text.contains(['\t', ';'])
+        && !text.contains('\t')
         && rows().all(|line| line.split_whitespace().count() == width)
         && 2 * rows().count() >= lines().count()
         && lines().any(spaced);
@@ -302,6 +305,6 @@ fn of_cells<'a>(text: &str, lines: impl Iterator<Item = &'a str> + Clone) -> Opt
     let end = lines.clone().enumerate().filter(|(_, line)| alike(line)).last().map_or(0, |(n, _)| n + 1);
     let within = end - lines.clone().position(|line| alike(&line)).unwrap_or(0) + usize::from(names);
     let whole = if rows > 2 { within } else { lines.clone().count() };
-    let found = rows > 1 && lines.clone().filter(alike).all(decimal) && 3 * table >= 2 * whole;
+    let found = rows > 1 && lines.clone().filter(alike).filter(number).all(decimal) && 3 * table >= 2 * whole;
     found.then_some(width)
 }

@@ -4,7 +4,7 @@
 use super::Table;
 use super::aside::LeftAside;
 use super::cell::{Cell, spaced};
-use super::clause::{clauses, drop, error, frame_rate, names_rate, of_clauses, states_length};
+use super::clause::{clauses, drop, error, frame_rate, lengths, names_rate, of_clauses, states_length};
 use super::datum::{self, Datum};
 use super::grid::{Grid, shown};
 use super::heading::{DropHeight, Heading, What};
@@ -30,8 +30,8 @@ pub(super) struct Stated {
     pub(super) sigma: (Option<f64>, Option<f64>),
     /// What the scale reads at the floor.
     pub(super) datum: Option<Datum>,
-    /// A line that speaks of heights, states a length, and is not used; and its number.
-    pub(super) length: Option<(String, u64)>,
+    /// A line that speaks of heights, states lengths, and is not used; its number, and these, m.
+    pub(super) length: Option<(String, u64, Vec<f64>)>,
 }
 
 /// Reads the lines above a table.
@@ -82,7 +82,7 @@ pub(super) fn stated(region: &Region<'_>) -> Stated {
             && states_length(&text)
             && !names_no_readings(&text)
         {
-            found.length = found.length.or(Some((shown(&text), line)));
+            found.length = found.length.or(Some((shown(&text), line, lengths(&text))));
         }
         found.fps = found.fps.or(fps.map(|fps| (fps, line)));
         found.drop = found.drop.or(height.map(|drop| (drop, line)));

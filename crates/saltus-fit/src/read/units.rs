@@ -147,6 +147,13 @@ impl Unit {
     pub(super) fn parse(text: &str) -> Option<Self> {
         let text = text.trim().trim_end_matches('.');
         let lower = folded(text);
+        // `m s^-1`, `m·s⁻¹`, `ms-1`.
+        let inverse = ["^-1", "^{-1}", "⁻¹", "^−1", "-1"].iter().find_map(|power| lower.strip_suffix(power));
+        if let Some((one, other)) =
+            inverse.and_then(|units| units.char_indices().last().map(|(at, _)| units.split_at(at)))
+        {
+            return Self::parse(&format!("{}/{other}", one.trim_end_matches([' ', '.', '·', '*', '⋅'])));
+        }
         let symbol = match meanings(&lower) {
             Some([Atom::Unit(symbol)]) => symbol,
             _ => lower.as_str(),
@@ -206,8 +213,9 @@ mod tests {
         );
         let dimension = |text: &str| Unit::parse(text).map(|u| u.dimension);
         assert_eq!(dimension("ms"), Some(Dimension::Time));
-        assert_eq!(["m/s", "metre/second", "Meter / s"].map(dimension), [Some(Dimension::Speed); 3]);
-        assert_eq!(["metre/wobble", "trial/second"].map(dimension), [None; 2]);
+        let speeds = ["m/s", "metre/second", "Meter / s", "m s^-1", "ms⁻¹", "m·s^{-1}", "cm s-1"];
+        assert_eq!(speeds.map(dimension), [Some(Dimension::Speed); 7]);
+        assert_eq!(["metre/wobble", "trial/second", "wobble^-1", "-1"].map(dimension), [None; 4]);
         assert_eq!(dimension("kg"), Some(Dimension::Other));
         assert_eq!(["", "furlong", "trial"].map(dimension), [None; 3]);
     }

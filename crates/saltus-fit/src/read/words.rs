@@ -1,10 +1,16 @@
 //! The words of a heading, its letters and digits apart, and the numbers among them.
 
+mod numbers;
+
 use std::borrow::Cow;
 
 use super::limits::MANY;
 use super::phrases::Phrase;
 use super::vocabulary::{Atom, accented, first_word, folded, meanings, spelt_out, unparted};
+pub(super) use numbers::{Numbers, numbers};
+
+/// Words that say nothing and have so many letters name something; shorter ones are articles.
+pub(super) const ARTICLE: usize = 4;
 
 /// A word of a heading.
 pub(super) struct Word {
@@ -396,58 +402,6 @@ pub(super) fn ordinal(word: &str) -> Option<usize> {
     let at = word.find(|c: char| !c.is_ascii_digit()).filter(|at| *at > 0)?;
     let (digits, end) = word.split_at(at);
     Phrase::Ending.is(end).then(|| digits.parse().ok()).flatten().filter(|n| *n <= MANY)
-}
-
-/// The numbers and names in a heading, each with what it counts.
-#[derive(Default)]
-pub(super) struct Numbers {
-    pub(super) bounce: Vec<usize>,
-    pub(super) trial: String,
-    pub(super) group: String,
-}
-
-pub(super) fn numbers(words: &[Word]) -> Numbers {
-    let mut found = Numbers::default();
-    let of_trial = |w: &Word| (w.is(Atom::Trial) || w.is(Atom::Repeat)) && !w.is(Atom::Filler);
-    let of_group = |w: &Word| w.is(Atom::Group) || w.is(Atom::Label);
-    let counts =
-        |w: &Word| matches!(w.kind, Kind::Known(atoms) if !matches!(atoms, [Atom::Filler, ..] | [Atom::Number, ..]));
-    let mut group: Vec<&str> = Vec::new();
-    let mut labelled = false;
-    for (n, word) in words.iter().enumerate() {
-        let before = words[..n].iter().rev().find(|w| counts(w));
-        match word.kind {
-            Kind::Number(_) | Kind::Letter if before.is_some_and(of_trial) => {
-                let name = before.map_or("", |w| w.text.as_str());
-                found.trial = format!("{name} {}", word.text);
-            }
-            Kind::Number(_) | Kind::Letter if before.is_some_and(of_group) => {
-                group.push(&word.text);
-                labelled = true;
-            }
-            Kind::Number(count) => found.bounce.push(count),
-            Kind::Ordinal(count) | Kind::Known(&[Atom::Ordinal(count)]) => {
-                let next = words[n + 1..].iter().find(|w| counts(w));
-                if next.is_some_and(of_trial) {
-                    found.trial = format!("{} {count}", next.map_or("", |w| w.text.as_str()));
-                } else if next.is_some_and(of_group) {
-                    group.push(&word.text);
-                    labelled = true;
-                } else {
-                    found.bounce.push(count);
-                }
-            }
-            _ if of_group(word) => {
-                labelled |= word.is(Atom::Label);
-                group.push(&word.text);
-            }
-            _ => {}
-        }
-    }
-    if labelled {
-        found.group = group.join(" ");
-    }
-    found
 }
 
 #[cfg(test)]

@@ -51,7 +51,9 @@ pub(super) fn commented(text: &str) -> Option<String> {
         line.starts_with('%') && heading.unknown.is_empty() && !heading.has(Atom::Time)
     };
     let marked = |line: &str| ["% ", "// ", "-- "].iter().any(|mark| line.starts_with(mark));
-    let remark = |line: &str| marked(line) && !cells(line) && !name(line);
+    // Beside lists that are given a name, `h0 = [30 45 60]`, every one is a remark.
+    let lists = text.lines().any(|line| line.contains("= [") || line.contains("=["));
+    let remark = |line: &str| marked(line) && (lists || !cells(line) && !name(line));
     let spelt = |line: &str| if remark(line) { format!("#{line}") } else { line.to_owned() };
     text.lines().any(remark).then(|| text.lines().map(spelt).collect::<Vec<_>>().join("\n") + "\n")
 }
@@ -68,6 +70,22 @@ pub(super) fn pointed(text: &str) -> Option<String> {
     };
     let bare = |line: &str| read(line).map_or(line, |at| line[..at].trim_end()).to_owned();
     text.lines().any(|line| read(line).is_some()).then(|| text.lines().map(bare).collect::<Vec<_>>().join("\n") + "\n")
+}
+
+/// A text of Markdown, with a table drawn in bars below a rule, whose headings are titles, `## Wood`
+/// above the table of it; `None` where there are none.
+pub(super) fn headed(text: &str) -> Option<String> {
+    let rule = |line: &str| {
+        let bare = line.trim();
+        bare.starts_with('|') && bare.contains("--") && bare.chars().all(|c| matches!(c, '|' | '-' | ':' | ' '))
+    };
+    let title = |line: &'_ str| -> Option<usize> {
+        let marks = line.len() - line.trim_start_matches('#').len();
+        (marks > 0 && line[marks..].starts_with(' ')).then_some(marks + 1)
+    };
+    let found = text.lines().any(rule) && text.lines().any(|line| title(line).is_some());
+    let bare = |line: &str| line[title(line).unwrap_or(0)..].to_owned();
+    found.then(|| text.lines().map(bare).collect::<Vec<_>>().join("\n") + "\n")
 }
 
 /// A text without the pictures that telephones set beside words; `None` if there are none.

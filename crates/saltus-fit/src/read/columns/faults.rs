@@ -277,6 +277,11 @@ impl Columns {
                     (self.columns[index].kind, self.columns[index].heading.unknown) = (Kind::Setting, Vec::new());
                     continue;
                 }
+                // Who did it tells none apart.
+                if self.columns[index].heading.has(Atom::Repeat) {
+                    self.leave(index, Why::NotUnderstood);
+                    continue;
+                }
                 let name = shown(&self.columns[index].heading.text);
                 return Err(region
                     .header_error(

@@ -2,13 +2,13 @@
 
 use std::cmp::Ordering;
 
-use super::{Columns, Kind, plain};
+use super::{Columns, Kind};
 use crate::error::TableError;
 use crate::finding::Note;
 use crate::read::ReadOptions;
 use crate::read::aside::Why;
 use crate::read::grid::shown;
-use crate::read::heading::{Role, What};
+use crate::read::heading::{Role, Value, What};
 use crate::read::region::Region;
 use crate::read::sequence::LEVEL;
 use crate::read::units::Unit;
@@ -61,7 +61,7 @@ impl Columns {
         }
         let heading = &self.columns[index].heading;
         let between = heading.has(Atom::Between) || heading.has(Atom::Interval);
-        self.columns[index].kind = Kind::Value(plain(if between { What::Interval } else { What::Time }));
+        self.columns[index].kind = Kind::Value(Value::of(if between { What::Interval } else { What::Time }));
         self.columns[index].unit = Some(Unit::frame(rate));
         Ok(())
     }

@@ -1,7 +1,7 @@
 //! Pairs of columns that say together what neither says alone: how long a gate is blocked on the
 //! way down and up, when a contact begins and ends, from where and up to where a ball came.
 
-use super::{Column, Columns, Kind, plain};
+use super::{Column, Columns, Kind};
 use crate::read::aside::Why;
 use crate::read::grid::shown;
 use crate::read::heading::{At, Role, Value, What};
@@ -92,7 +92,7 @@ impl Columns {
         let name = shown(&self.columns[index].heading.text);
         self.aside.retain(|aside| aside.name != name);
         self.columns[index].heading.unknown.clear();
-        self.columns[index].kind = Kind::Value(Value { at, ..plain(what) });
+        self.columns[index].kind = Kind::Value(Value { at, ..Value::of(what) });
     }
 
     /// `Gate time down (ms)` beside `Gate time up (ms)`: a ball of one size blocks a gate for as

@@ -82,6 +82,11 @@ impl Column {
         }
     }
 
+    /// Whether its numbers are hundredths.
+    pub(super) fn of_hundredths(&self) -> bool {
+        self.heading.has(Atom::Percent) || self.unit.is_some_and(|unit| unit.scale == Scale::Percent)
+    }
+
     /// Whether the column holds readings of this quantity.
     pub(super) fn holds(&self, what: What) -> bool {
         self.value().is_some_and(|value| value.what == what)
@@ -126,6 +131,7 @@ impl Columns {
         found.signed(region);
         found.capitals(region);
         found.enumerated();
+        found.of_one_name();
         found.spans(region);
         found.counted(region);
         found.measured(region);
@@ -313,7 +319,7 @@ impl Columns {
                     };
                     let group = if words.is_empty() { column.heading.text.clone() } else { words.join(" ") };
                     let value = column.heading.value().cloned();
-                    Kind::Value(Value { group, ..value.unwrap_or(plain(what)) })
+                    Kind::Value(Value { group, ..value.unwrap_or(Value::of(what)) })
                 }
                 _ => {
                     // Whether its values repeat or not.
@@ -355,7 +361,7 @@ impl Columns {
                 Some(Dimension::Length) => What::Height,
                 _ => What::Unsaid,
             };
-            let value = column.value().cloned().unwrap_or(plain(what));
+            let value = column.value().cloned().unwrap_or(Value::of(what));
             column.kind = Kind::Value(Value { role: Role::Reading, ..value });
             let name = shown(&column.heading.text);
             self.aside.retain(|aside| aside.name != name);
@@ -408,10 +414,7 @@ impl Columns {
                 continue;
             };
             // Hundredths beside heights follow from them.
-            let percent = |n: usize| {
-                let column = &self.columns[n];
-                column.heading.has(Atom::Percent) || column.unit.is_some_and(|unit| unit.scale == Scale::Percent)
-            };
+            let percent = |n: usize| self.columns[n].of_hundredths();
             if percent(index) != percent(*before) && value.what == What::Height {
                 let first = *before;
                 if percent(index) {
@@ -465,18 +468,4 @@ fn constant(region: &Region<'_>, column: usize) -> bool {
     let first = numbers.next();
     let mut rest = numbers.peekable();
     rest.peek().is_some() && rest.all(|n| Some(n) == first)
-}
-
-/// Readings of which the row tells the event.
-pub(super) fn plain(what: What) -> Value {
-    Value {
-        what,
-        at: At::Row,
-        role: Role::Reading,
-        trial: String::new(),
-        group: String::new(),
-        position: false,
-        or_trial: false,
-        drop: None,
-    }
 }

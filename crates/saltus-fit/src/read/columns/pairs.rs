@@ -1,7 +1,7 @@
 //! Columns that are what they are beside others: drops with their own rebounds, counts of rows,
 //! measured cells under the name of a key.
 
-use super::{Column, Columns, Kind, constant, plain};
+use super::{Column, Columns, Kind, constant};
 use crate::error::TableError;
 use crate::finding::Note;
 use crate::read::aside::Why;
@@ -26,7 +26,12 @@ impl Columns {
         if !sided || !read(What::Height, At::Row).is_empty() {
             return;
         }
-        for index in read(What::Height, At::Release) {
+        // So do the greatest heights that it came to.
+        let highest = self
+            .values()
+            .filter(|(_, c, v)| v.what == What::Height && v.role == Role::Max && c.heading.unknown.is_empty());
+        let highest: Vec<usize> = highest.map(|(n, _, _)| n).collect();
+        for index in read(What::Height, At::Release).into_iter().chain(highest) {
             self.leave(index, Why::Elsewhere);
         }
     }
@@ -139,14 +144,12 @@ impl Columns {
         let letter = |c: &Column| c.heading.text.split([' ', '(', '[', ',', '_']).next().unwrap_or_default().to_owned();
         let has = |c: &Column, atoms: &[Atom]| atoms.iter().any(|atom| c.heading.has(*atom));
         // Columns that are only counted, `1,2,3`, hold what stands beside them.
-        let high = |v: &Value| {
-            let height = v.what == What::Height || v.what == What::Unsaid && !v.trial.is_empty();
-            height && v.role == Role::Reading
-        };
+        let high = |v: &Value| v.what == What::Height || v.what == What::Unsaid && !v.trial.is_empty();
         let plain = |c: &Column, v: &Value| {
             let other = [Atom::Release, Atom::Before, Atom::After, Atom::Top, Atom::Rebound, Atom::Impact];
             let named = c.heading.has(Atom::Height) && c.heading.unknown.is_empty() && !has(c, &other);
-            high(v) && v.at == At::Row && v.trial.is_empty() && v.group.is_empty() && (named || letter(c) == "H")
+            let own = v.role == Role::Reading && v.at == At::Row && v.trial.is_empty() && v.group.is_empty();
+            high(v) && own && (named || letter(c) == "H")
         };
         let rebound = |c: &Column, v: &Value| {
             let sprung = has(c, &[Atom::Rebound, Atom::Impact, Atom::After]) || !c.heading.has(Atom::Height);
@@ -159,10 +162,16 @@ impl Columns {
         };
         let counted = self.number().is_some_and(|(_, sure)| sure);
         let Some(release) = of(Some("H")).or_else(|| of(None).filter(|_| !counted)) else { return };
-        let lower = |(n, c, v): (usize, &Column, &Value)| n == release || rebound(c, v) || high(v) && letter(c) == "h";
-        // A mean beside them says nothing more.
-        let read = || self.values().filter(|(_, _, v)| v.role == Role::Reading);
-        let others: Vec<usize> = read().map(|(n, _, _)| n).filter(|n| *n != release).collect();
+        let lower = |(_, c, v): &(usize, &Column, &Value)| rebound(c, v) || high(v) && letter(c) == "h";
+        // A mean beside them says nothing more, but by itself it stands for them.
+        let of = |role: Role| {
+            let read = |(_, c, v): &(usize, &Column, &Value)| {
+                v.role == role && c.heading.unknown.is_empty() && !c.of_hundredths()
+            };
+            self.values().filter(read).filter(|(n, _, _)| *n != release).collect::<Vec<_>>()
+        };
+        let read = Some(of(Role::Reading)).filter(|read| !read.is_empty()).unwrap_or_else(|| of(Role::Mean));
+        let others: Vec<usize> = read.iter().map(|(n, _, _)| *n).collect();
         let number = |row: usize, column: usize| match region.view.read(row, column) {
             Cell::Number(m) => Some((m.unit.or(self.columns[column].unit), m.value)),
             _ => None,
@@ -174,7 +183,7 @@ impl Columns {
         };
         let pairs = region.rows.iter().flat_map(|&row| others.iter().map(move |&n| (row, n)));
         let mut pairs = pairs.filter_map(|(row, n)| Some((number(row, release)?, number(row, n)?))).peekable();
-        if read().all(lower) && pairs.peek().is_some() && pairs.all(|(release, below)| above(release, below)) {
+        if read.iter().all(lower) && pairs.peek().is_some() && pairs.all(|(release, below)| above(release, below)) {
             self.place(release, At::Release, String::new());
         }
     }
@@ -328,7 +337,7 @@ impl Columns {
         let read: Vec<At> = self.values().filter(|(_, _, v)| v.role != Role::Error).map(|(_, _, v)| v.at).collect();
         let of_drops = read == [At::Release];
         if apart && of_drops && self.columns[index].heading.unit.is_none() {
-            self.columns[index].kind = Kind::Value(plain(What::Height));
+            self.columns[index].kind = Kind::Value(Value::of(What::Height));
         }
     }
 
@@ -447,7 +456,7 @@ impl Columns {
             if of_one && cells.iter().filter(|cell| unit(cell).is_some()).count() > 1 {
                 // Of cells that held several readings each column is a trial.
                 let run = self.columns[column].heading.text.split_once(':').map(|(run, _)| run.to_owned());
-                self.columns[column].kind = Kind::Value(Value { trial: run.unwrap_or_default(), ..plain(what) });
+                self.columns[column].kind = Kind::Value(Value { trial: run.unwrap_or_default(), ..Value::of(what) });
             }
         }
     }

@@ -1,13 +1,13 @@
 //! Ratios of heights, where they are all there is: a table of them alone, or beside the heights of
 //! release.
 
-use super::{Column, Columns, Kind, plain};
+use super::{Column, Columns, Kind};
 use crate::error::TableError;
 use crate::finding::Note;
 use crate::read::aside::Why;
 use crate::read::cell::Cell;
 use crate::read::grid::shown;
-use crate::read::heading::{At, Of, Role, Value, What};
+use crate::read::heading::{At, Heading, Of, Role, Value, What};
 use crate::read::region::Region;
 use crate::read::sequence::LEVEL;
 use crate::read::units::{Scale, Unit};
@@ -103,7 +103,7 @@ impl Columns {
             let name = shown(&self.columns[index].heading.text);
             let column = &mut self.columns[index];
             column.unit = if percent { Unit::parse("%") } else { Some(Unit::WHOLE) };
-            column.kind = if series { Kind::Value(Value { trial, ..plain(What::Height) }) } else { Kind::Share };
+            column.kind = if series { Kind::Value(Value { trial, ..Value::of(What::Height) }) } else { Kind::Share };
             self.aside.retain(|aside| aside.name != name);
             self.notes.push(Note::Share { column: name, of_release: series });
         }
@@ -167,9 +167,7 @@ impl Columns {
 /// `below` where it stands in no column: repeats, and not bounces.
 pub(in crate::read) fn level(region: &Region<'_>, drop: Option<usize>, nth: &[usize], below: bool) -> bool {
     let ratios = |pairs: &[(usize, usize)]| {
-        let all = region.rows.iter().flat_map(|&row| {
-            pairs.iter().filter_map(move |&(a, b)| Some(region.view.number(row, b)? / region.view.number(row, a)?))
-        });
+        let all = pairs.iter().flat_map(|&(a, b)| parts(region, a, b));
         median(&mut all.collect::<Vec<f64>>())
     };
     let later: Vec<(usize, usize)> = nth.windows(2).map(|w| (w[0], w[1])).collect();
@@ -177,13 +175,18 @@ pub(in crate::read) fn level(region: &Region<'_>, drop: Option<usize>, nth: &[us
     below && ratios(&later).is_some_and(|later| later > LEVEL)
 }
 
+/// What part of the number in column `a` the one in column `b` is, row by row, each in its unit.
+fn parts(region: &Region<'_>, a: usize, b: usize) -> Vec<f64> {
+    let unit = |n: usize| region.header.get(n).and_then(|name| Heading::parse(name).unit);
+    let over = unit(a).zip(unit(b)).map_or(1.0, |(a, b)| b.si(1.0) / a.si(1.0));
+    let part = |&row: &usize| Some(over * region.view.number(row, b)? / region.view.number(row, a)?);
+    region.rows.iter().filter_map(part).collect()
+}
+
 /// Whether heights side by side that look level are as well those of bounces that lose as little:
 /// each is nearer to the part of the one before that the first is of the release than to all of it.
 pub(in crate::read) fn either(region: &Region<'_>, drop: usize, nth: &[usize]) -> bool {
-    let ratio = |a: usize, b: usize| {
-        let all = region.rows.iter().filter_map(|&row| Some(region.view.number(row, b)? / region.view.number(row, a)?));
-        median(&mut all.collect::<Vec<f64>>())
-    };
+    let ratio = |a: usize, b: usize| median(&mut parts(region, a, b));
     let Some(first) = nth.first().and_then(|&n| ratio(drop, n)) else { return false };
     let mut later: Vec<f64> = nth.windows(2).filter_map(|w| ratio(w[0], w[1])).collect();
     median(&mut later).is_some_and(|later| later < 1.0 && (later / first).ln().abs() < later.ln().abs())

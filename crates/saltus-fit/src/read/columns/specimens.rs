@@ -1,4 +1,5 @@
-//! Columns that name what was dropped, or who dropped it: balls that are one kind, and trials.
+//! Columns that name what was dropped, or who dropped it: balls that are one kind, and trials;
+//! and trials that only the first of several columns names in full.
 
 use std::collections::HashSet;
 
@@ -50,6 +51,32 @@ impl Columns {
                 && (numbered && region.codes(index).is_some() || persons && region.counts(index))
             {
                 self.columns[index].kind = Kind::Trial;
+            }
+        }
+    }
+
+    /// `Time to rest, trial 1 (s)` beside `trial 2 (s)`: columns behind the first trial that say no
+    /// more than which trial they are, or that they are the mean, and its unit, are of its quantity.
+    pub(super) fn of_one_name(&mut self) {
+        let nth = |v: &Value| v.trial.rsplit(' ').next().and_then(|n| n.parse::<usize>().ok());
+        for index in 0..self.columns.len() {
+            let Some(first) = self.columns[index].value().filter(|v| nth(v) == Some(1)).cloned() else { continue };
+            let unit = self.columns[index].unit;
+            let says = [What::Height, What::Interval, What::Total, What::Time].contains(&first.what);
+            if !says || self.columns[index].heading.trial_only() || !self.columns[index].heading.unknown.is_empty() {
+                continue;
+            }
+            for (n, column) in (2..).zip(&mut self.columns[index + 1..]) {
+                let same = column.unit.is_none_or(|own| Some(own) == unit) && column.heading.trial_only();
+                // Behind the last of them may stand their mean.
+                let mean = |v: &Value| v.role == Role::Mean && v.trial.is_empty() && n > 2;
+                match &mut column.kind {
+                    Kind::Value(value) if same && (nth(value) == Some(n) || mean(value)) => {
+                        (value.what, value.at) = (first.what, first.at);
+                        column.unit = unit;
+                    }
+                    _ => break,
+                }
             }
         }
     }

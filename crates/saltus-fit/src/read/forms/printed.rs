@@ -177,7 +177,7 @@ fn plain(value: &str) -> String {
 /// The lists of a script, `h = [1.0, 0.64 ...` with the rest in the next line, a row each behind
 /// their names; a unit that a remark behind the list states is that of its numbers. Of other lines
 /// the remarks are left: what is done with the lists says nothing of them. `None` where no list
-/// goes on in another line, and none bears such a remark.
+/// goes on in another line, none bears such a remark, and nothing is done with any.
 pub(super) fn scripted(text: &str) -> Option<String> {
     let mut found: Vec<String> = Vec::new();
     let (mut special, mut lists) = (false, 0);
@@ -189,6 +189,7 @@ pub(super) fn scripted(text: &str) -> Option<String> {
         let named = !name.is_empty() && name.chars().all(|c| c.is_alphanumeric() || c == '_');
         let open = |code: &str| code.matches(['[', '(', '{']).count() > code.matches([']', ')', '}']).count();
         if !named || !begun.contains(['[', '(', '{']) {
+            special |= lists > 0 && code.contains('(') && code.ends_with([')', ';']);
             found.push(if remark.is_empty() { String::new() } else { format!("#{remark}") });
             continue;
         }

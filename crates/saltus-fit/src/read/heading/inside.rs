@@ -3,6 +3,7 @@
 
 use std::borrow::Cow;
 
+use super::super::cell::{Cell, read};
 use super::super::phrases::Phrase;
 use super::super::units::{Dimension, Scale, Unit};
 use super::super::vocabulary::{Atom, folded, meanings};
@@ -272,6 +273,25 @@ pub(super) fn of_units(text: &str) -> bool {
 pub(super) fn asks_for_unit(text: &str) -> bool {
     let words = split(text);
     words.iter().any(|word| word.is(Atom::Measure)) && words.iter().all(|w| w.is(Atom::Measure) || w.is(Atom::Filler))
+}
+
+/// A sign of a quantity has fewer letters: `h_mean` has five, `height` is a word.
+const SIGN: usize = 6;
+
+/// Whether a text is the sign of a quantity, `h`, `h_0`, `vin`, and no word with a meaning.
+pub(in crate::read) fn is_sign(text: &str) -> bool {
+    let letters = || text.chars().filter(|c| c.is_alphabetic());
+    let end = text.find(|c: char| !c.is_alphabetic()).unwrap_or(text.len());
+    let word = text[..end].chars().count() > 1 && meanings(&folded(&text[..end])).is_some();
+    let joined = text.chars().all(|c| c.is_alphanumeric() || matches!(c, '_' | '\''));
+    !word && end > 0 && joined && letters().count() < SIGN
+}
+
+/// Whether a text is a number of degrees, of a pressure, of anything but lengths, times and speeds,
+/// and nothing else: `21 °C`.
+pub(super) fn of_a_condition(text: &str) -> bool {
+    let other = |unit: Unit| unit.dimension == Dimension::Other && !matches!(unit.scale, Scale::Energy { .. });
+    !text.contains(['(', '[']) && matches!(read(text, false), Cell::Number(m) if m.unit.is_some_and(other))
 }
 
 /// Whether a text is the format of a clock: `min:sec`, `hh:mm:ss.ms`.

@@ -4,11 +4,12 @@ use std::ops::Range;
 
 use super::super::cell::Cell;
 use super::super::grid::View;
-use super::super::heading::{At, Heading, Meaning, Role, Value, What};
+use super::super::heading::{At, Heading, Meaning, Role, Value, What, is_sign};
 use super::super::phrases::Phrase;
-use super::super::sequence::{LEVEL, of_samples};
+use super::super::sequence::of_samples;
 use super::super::units::{Dimension, Unit};
 use super::super::vocabulary::{ROWS, meanings};
+use super::legend::Legend;
 
 /// A header: its names, the first of its lines, the first row below, and how much of it is
 /// understood.
@@ -46,15 +47,12 @@ pub(super) const VALUE: usize = 100;
 pub(super) const SHARE: usize = 50;
 
 /// The headers that may begin in a row: one line, or two.
-pub(super) fn headers(view: View<'_>, row: usize, end: usize) -> Vec<Header> {
+pub(super) fn headers(view: View<'_>, legend: &Legend, row: usize, end: usize) -> Vec<Header> {
     let mut found = Vec::new();
     if !names_only(view, row) {
-        if let Some(header) = counted(view, row, end) {
-            found.push(header);
-        }
         return found;
     }
-    let line = |n: usize| -> Vec<String> { view.cells(n).map(str::to_owned).collect() };
+    let line = |n: usize| -> Vec<String> { view.cells(n).map(|cell| legend.words(cell).to_owned()).collect() };
     let one = line(row);
     let below = |n: usize| n < end && names_only(view, n);
     // Units are no names; and one name alone above several is a title.
@@ -179,44 +177,6 @@ pub(super) fn names_only(view: View<'_>, row: usize) -> bool {
     words > 0 && numbers == 0
 }
 
-/// `Drop height (cm),1,2,3` above rows of numbers: the trials are only counted.
-fn counted(view: View<'_>, row: usize, end: usize) -> Option<Header> {
-    let width = view.width(row);
-    let named = (0..width).take_while(|&c| !view.cell(row, c).is_empty() && !view.is_number(row, c)).count();
-    let count = (named..width).take_while(|&c| view.cell(row, c).parse() == Ok(c + 1 - named)).count();
-    let rest = (named + count..width).all(|c| !view.is_number(row, c));
-    if named == 0 || count < 2 || !rest || row + 1 >= end {
-        return None;
-    }
-    let first = Heading::parse(view.cell(row, 0));
-    // Below the name of what was dropped stand names, but none of a quantity.
-    let below = view.cell(row + 1, 0);
-    let called = named == 1 && matches!(first.meaning, Meaning::Setting) && !below.is_empty();
-    let called = called && Heading::parse(below).value().is_none_or(|value| value.what == What::Unsaid);
-    let begins = view.is_number(row + 1, if called { named } else { 0 });
-    let of = if falling(view, row + 1..end, named, count) { "bounce" } else { "trial" };
-    let names: Vec<String> = (0..width)
-        .map(|c| match view.cell(row, c) {
-            cell if (named..named + count).contains(&c) => format!("{of} {cell}"),
-            cell => cell.to_owned(),
-        })
-        .collect();
-    // What the numbers are, lines above may state.
-    let score = score(&names).max(VALUE);
-    (begins && first.understood()).then_some(Header { names, at: row, below: row + 1, score })
-}
-
-/// Whether numbers fall from column to column in every row that has any, each to less than `LEVEL`
-/// of the one before: bounces one after the other, and no repeats.
-fn falling(view: View<'_>, rows: Range<usize>, first: usize, count: usize) -> bool {
-    let mut pairs = rows
-        .flat_map(|row| {
-            (first + 1..first + count).filter_map(move |c| view.number(row, c - 1).zip(view.number(row, c)))
-        })
-        .peekable();
-    pairs.peek().is_some() && pairs.all(|(before, after)| after < LEVEL * before)
-}
-
 /// `Rebound (cm)` over `1,2,3`: the columns that a name spans are counted in the line below it.
 fn numbered(view: View<'_>, upper: &[String], row: usize) -> Option<Vec<String>> {
     let width = view.width(row).max(upper.len());
@@ -247,7 +207,7 @@ fn numbered(view: View<'_>, upper: &[String], row: usize) -> Option<Vec<String>>
 }
 
 /// How much of a header is understood.
-fn score(names: &[String]) -> usize {
+pub(super) fn score(names: &[String]) -> usize {
     let of = |name: &String| {
         let heading = Heading::parse(name);
         match heading.meaning {
@@ -312,11 +272,25 @@ pub(super) fn both(upper: &[String], lower: &[String]) -> Option<Vec<String>> {
         (name, lower) if !cell(upper, n).is_empty() && of_units(&[lower.clone(), String::new()]) => {
             format!("{name} ({})", spelt(&lower))
         }
+        // A sign, with its unit, above what it stands for: `h1 [cm]`, `after the bounce`.
+        (name, lower) if !cell(upper, n).is_empty() && explained(name, &lower) => {
+            let at = name.rfind(['(', '[']).unwrap_or(name.len());
+            format!("{lower} {}", &name[at..])
+        }
         // `Trial 1` above `Time (s)`, and `Trial 2` above another: runs side by side.
         (name, lower) if repeated => format!("{name}: {lower}"),
         (name, lower) => spanned(name, &lower),
     };
     merged.then(|| (0..width).map(name).collect())
+}
+
+/// Whether a name that is a sign, with the unit of it, `h1 [cm]`, stands above the words that say
+/// what it is.
+fn explained(name: &str, words: &str) -> bool {
+    let (above, own) = (Heading::parse(name), Heading::parse(words));
+    let sign = is_sign(name.split(['(', '[']).next().unwrap_or_default().trim());
+    let fits = |unit: Unit| own.value().is_some_and(|v| v.what.dimension().is_none_or(|d| d == unit.dimension));
+    sign && name.ends_with([')', ']']) && own.unit.is_none() && above.unit.is_some_and(fits)
 }
 
 /// What stands above each column of blocks of the same names: the cells above its block, of which
@@ -389,14 +363,18 @@ fn spelt(cell: &str) -> &str {
 /// What stands for the unit of a count, in a line of units.
 const UNITLESS: [&str; 9] = ["#", "n", "no.", "nr.", "-", "–", "—", "/", "1"];
 
-/// Whether a line holds errors of reading and nothing else: `±1 °C`, `± 0.01 m`.
+/// Whether a line holds errors of reading, and units of columns without one, and nothing else: `±1
+/// °C`, `(± 0.01 m)`, `cm`.
 fn of_errors(line: &[String]) -> bool {
-    let error = |cell: &str| {
-        let size = ["±", "+/-", "+-"].iter().find_map(|mark| cell.strip_prefix(mark));
-        size.is_some_and(|size| size.trim_start().starts_with(|c: char| c.is_ascii_digit()))
-    };
-    let mut filled = line.iter().filter(|cell| !cell.is_empty()).peekable();
-    filled.peek().is_some() && filled.all(|cell| error(cell))
+    let filled = || line.iter().filter(|cell| !cell.is_empty());
+    filled().any(|cell| is_error(cell)) && filled().all(|cell| is_error(cell) || of_units(std::slice::from_ref(cell)))
+}
+
+/// Whether a cell is an error of reading.
+fn is_error(cell: &str) -> bool {
+    let bare = cell.trim_start_matches(['(', '[']);
+    let size = ["±", "+/-", "+-"].iter().find_map(|mark| bare.strip_prefix(mark));
+    size.is_some_and(|size| size.trim_start().starts_with(|c: char| c.is_ascii_digit()))
 }
 
 /// The names of columns, each with the error that stands below the name in `upper` that spans it.
@@ -406,7 +384,11 @@ fn with_errors(upper: &[String], names: Vec<String>, errors: &[String]) -> Vec<S
         if upper.get(n).is_some_and(|cell| !cell.is_empty()) {
             spanning = errors.get(n).map_or("", String::as_str);
         }
-        if name.is_empty() || spanning.is_empty() { name } else { format!("{name} {spanning}") }
+        match spanning {
+            _ if name.is_empty() || spanning.is_empty() => name,
+            error if is_error(error) => format!("{name} {error}"),
+            unit => format!("{name} ({})", spelt(unit)),
+        }
     };
     names.into_iter().enumerate().map(&mut name).collect()
 }

@@ -1,0 +1,87 @@
+//! What lines around a table say that the signs above its columns stand for.
+
+use super::super::cell::{Cell, read};
+use super::super::clause::clauses;
+use super::super::grid::View;
+use super::super::heading::{Heading, Meaning, What, is_sign};
+use super::super::vocabulary::ROWS;
+
+/// Signs, and the words for them: `h0 = drop height in cm, h1: rebound in cm`.
+#[derive(Default)]
+pub(super) struct Legend(Vec<(String, String)>);
+
+impl Legend {
+    /// The legend that cells of words and comments of a text hold, no further than `ROWS` from its
+    /// edges.
+    pub(super) fn of(view: View<'_>) -> Self {
+        let grid = view.grid;
+        let edges = (0..grid.rows()).filter(|row| *row < ROWS || row + ROWS >= grid.rows());
+        let cells = edges.flat_map(|row| (0..grid.width(row)).map(move |n| grid.cell(row, n)));
+        let comments = grid.comments().take(ROWS).map(|(_, text)| text);
+        let lines = cells.chain(comments).filter(|text| text.contains(['=', ':']));
+        Self(lines.flat_map(clauses).filter_map(stated).collect())
+    }
+
+    /// What a cell says: the words that its sign stands for, or itself.
+    pub(super) fn words<'a>(&'a self, cell: &'a str) -> &'a str {
+        self.0.iter().find(|(sign, _)| sign == cell).map_or(cell, |(_, words)| words)
+    }
+}
+
+/// A sign and the words that a clause gives it, which say what it measures.
+fn stated(clause: &str) -> Option<(String, String)> {
+    let (sign, words) = clause.split_once(['=', ':'])?;
+    let sign = sign.trim_matches(|c: char| c.is_whitespace() || matches!(c, '%' | '#' | '*' | '-' | '('));
+    // A sign that says what it is, or how it is worked out, needs no words.
+    let words = words.trim().trim_end_matches('.');
+    let number = matches!(read(words, false), Cell::Number(_));
+    let unit = sign.chars().nth(1).is_some() && Heading::parse(sign).unit.is_some();
+    if !is_sign(sign) || number || unit || words.contains(['=', '/', '√', '^']) {
+        return None;
+    }
+    // What brackets hold behind them is a remark.
+    let bare = words.split(" (").next().unwrap_or(words);
+    [words, bare].into_iter().find_map(|words| {
+        let heading = Heading::parse(words);
+        let says = match &heading.meaning {
+            Meaning::Value(value) => value.what != What::Unsaid && heading.unit.is_some(),
+            Meaning::Setting | Meaning::Trial => true,
+            _ => false,
+        };
+        (says && heading.unknown.is_empty()).then(|| (sign.to_owned(), words.to_owned()))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A sign of more letters would be a word of another language; of none longer than one letter
+    /// `h_mean` were none.
+    #[test]
+    fn signs_are_no_words() {
+        for sign in ["h", "h0", "h_mean", "hśr", "v'", "hreb1"] {
+            assert!(is_sign(sign), "{sign}");
+        }
+        for word in ["hauteurs", "wobbling", "drop", "Ball", "0h", "h 1", "", "height"] {
+            assert!(!is_sign(word), "{word}");
+        }
+    }
+
+    #[test]
+    fn signs_stand_for_words_that_measure() {
+        for (clause, expected) in [
+            ("h0 = drop height in cm", Some(("h0", "drop height in cm"))),
+            ("R: rebound height (cm)", Some(("R", "rebound height (cm)"))),
+            ("% h1 = rebound height in cm (with a wobble)", Some(("h1", "rebound height in cm"))),
+            ("h1 = 64 cm", None),
+            ("COR = h1/h0", None),
+            ("D = wobble (cm)", None),
+            ("Height: rebound height (cm)", None),
+            ("d = diameter", None),
+        ] {
+            let expected = expected.map(|(sign, words)| (sign.to_owned(), words.to_owned()));
+            assert_eq!(stated(clause), expected, "{clause}");
+        }
+    }
+}
