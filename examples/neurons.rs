@@ -2,7 +2,7 @@
 //! spike costs as the network grows.
 //!
 //! `cargo run --example neurons` compares spikes with the exact solution;
-//! `cargo run --release --example neurons -- cost` times them, and draws `docs/trust/neurons.svg`.
+//! `cargo run --profile dist --example neurons -- cost` times them, and draws `docs/trust/neurons.svg`.
 
 use std::error::Error;
 use std::ops::ControlFlow;

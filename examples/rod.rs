@@ -2,7 +2,7 @@
 //! which reads its neighbours alone.
 //!
 //! `cargo run --example rod` compares the switches with the exact solution;
-//! `cargo run --release --example rod -- cost` times them, and draws `docs/trust/rod.svg`.
+//! `cargo run --profile dist --example rod -- cost` times them, and draws `docs/trust/rod.svg`.
 
 use std::error::Error;
 use std::f64::consts::PI;
