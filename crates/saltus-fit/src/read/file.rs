@@ -166,8 +166,12 @@ fn joined_up<'a>(
     }
     // Means of the drops of another table of the text, and ratios of its heights, follow from these.
     let derived = pool::measured(&mut parts, |(_, table)| table);
-    let names = derived.into_iter().filter_map(|(_, table)| Some(table.trials.first()?.readings.first()?.line));
-    aside.extend(names.map(|line| LeftAside::new(Kind::Text, "a table", Why::Derived).at(line)));
+    let lines = derived.iter().filter_map(|(_, table)| Some(table.trials.first()?.readings.first()?.line));
+    for line in lines {
+        let of = regions.iter().find(|region| region.rows.iter().any(|&row| region.view.line(row, 0) == line));
+        let name = of.map_or_else(String::new, |region| super::grid::shown(&region.header.join(" ")));
+        aside.push(LeftAside::new(Kind::Text, name, Why::Derived).at(line));
+    }
     named(&regions, &titles, &mut parts);
     let still = if tracks { leave_still(&mut parts) } else { Vec::new() };
     if tracks && at_once(&parts) {

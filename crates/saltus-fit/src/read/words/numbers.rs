@@ -32,9 +32,8 @@ pub(in crate::read) fn numbers(words: &[Word]) -> Numbers {
             }
             // Behind a word that says nothing it counts what that names: `class 7`, `camera 2`.
             Kind::Number(_) if names(words, n) => {
-                if found.trial.is_empty() {
-                    found.trial = format!("{} {}", words[n - 1].text, word.text);
-                }
+                let name = || format!("{} {}", words[n - 1].text, word.text);
+                found.trial = Some(std::mem::take(&mut found.trial)).filter(|t| !t.is_empty()).unwrap_or_else(name);
             }
             Kind::Number(count) => found.bounce.push(count),
             Kind::Ordinal(count) | Kind::Known(&[Atom::Ordinal(count)]) => {
