@@ -242,6 +242,46 @@ fn many_hands_write_the_same_drops() {
             "Lab\nBouncing of a ball\n\n  H (cm)    h avg (cm)   std\n  ------    ----------   ---\n{}\n  g = 9.81 m/s^2 ; e from the slope\n",
             rows(&|h| format!("  {h:6.1}    {:10.1}   0.8\n", reb(h, 0.0)))
         ),
+        // Hundredths of a drop whose height the heading states.
+        format!("ball;rebound % of drop height (mean of 5 drops from 1.5 m)\n{}", rows(&|_| "zorb;64%\n".to_owned())),
+        // What measures beside a name above the table names none of its columns.
+        format!(
+            "Method;Drop from 2540 mm onto stone;;\nSample no.;Wobble (mm);Drop height (mm);Rebound height (mm)\n{}",
+            rows(&|h| format!("TB-{h};6.2;2540;{:.0}\n", reb(2540.0, h * 1e-5)))
+        ),
+        // A remark behind the cells of a row, which blanks part.
+        format!(
+            "Zorb\nBy: Sem and Flo    on: 8-2-2023\n\nbounce   height (cm)\n{}",
+            (0..5)
+                .map(|n| format!(
+                    "{n}       {:.1}{}\n",
+                    80.0 * 0.64f64.powi(n),
+                    if n == 3 { "    hard to read" } else { "" }
+                ))
+                .collect::<String>()
+        ),
+        // A distance from a sensor above and the height that it leaves.
+        format!(
+            "peak;distance to sensor (mm);height above floor (mm)\n{}",
+            (0..5)
+                .map(|n| 900.0 * 0.64f64.powi(n))
+                .map(|h| format!("{:.0};{h:.0}\n", 1400.0 - h.round()))
+                .enumerate()
+                .map(|(n, row)| format!("{n};{row}"))
+                .collect::<String>()
+        ),
+        // The error of a COR is none.
+        format!(
+            "h0 / m;u(h0) / m;h1 / m;u(h1) / m;e;u(e)\n{}",
+            rows(&|h| format!("{:.3};0.002;{:.3};0.005;0.800;0.015\n", h / 100.0, reb(h, 0.0) / 100.0))
+        ),
+        // Balls that are only counted.
+        format!(
+            "Tennis club, bounces\nBall;Drop (cm);Rebound (cm)\n{}",
+            (1..6).map(|n| format!("{n};254;{:.0}\n", reb(254.0, f64::from(n - 3) * 4e-3))).collect::<String>()
+        ),
+        // A unit before a remark of how many drops.
+        format!("Drop height / cm;Mean rebound / cm (of 5 drops)\n{}", rows(&|h| format!("{h};{:.1}\n", reb(h, 0.0)))),
     ] {
         assert!(is(&fit(&text), 0.8), "{text}{}", fit(&text));
     }

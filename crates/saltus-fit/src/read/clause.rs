@@ -320,7 +320,14 @@ pub(super) fn states_length(text: &str) -> bool {
         split(text).iter().any(|w| of.iter().any(|atom| w.is(*atom)))
     };
     // What a floor is, beside how large the ball is, places neither: `ball 27 mm, floor: granite`.
-    clauses(text).any(measures) && (of_heights(text) || clauses(text).any(|part| measures(part) && names_floor(part)))
+    clauses(text).any(|part| measures(part) && !of_size(part))
+        && (of_heights(text) || clauses(text).any(|part| measures(part) && names_floor(part)))
+}
+
+/// Whether a clause begins with the size of a ball: `d = 63 mm`, `diameter 6.7 cm`.
+fn of_size(clause: &str) -> bool {
+    let first = clause.trim_start().split([' ', '=', ':']).next().map(folded).unwrap_or_default();
+    Phrase::Diameter.is(&first) || Phrase::Radius.is(&first) || matches!(&*first, "d" | "ø")
 }
 
 /// Whether a length stands in a text.
@@ -456,6 +463,7 @@ mod tests {
             ("The floor is at the 12 cm mark of the tape", true),
             ("Distance from the ceiling; floor is at 240cm", true),
             ("Tennis ball, diameter 6.7 cm, mass 58 g", false),
+            ("Lacrosse ball, d = 63 mm, heights to the bottom of the ball", false),
             ("Table 3: bounce heights of 2 balls", false),
             ("Bounce heights, class 7b", false),
         ] {

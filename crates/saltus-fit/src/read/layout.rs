@@ -64,7 +64,9 @@ impl Track {
             }
             return;
         };
-        self.drop = self.drop.or(value.drop.as_ref().map(DropHeight::metres));
+        // Hundredths are of the release, wherever that was.
+        let drop = value.drop.as_ref().filter(|_| !column.of_hundredths());
+        self.drop = self.drop.or(drop.map(DropHeight::metres));
         let slot = match (value.what, value.at) {
             (_, At::Nth(_)) => return self.nth.push(index),
             (What::Height, At::Release | At::Before) => &mut self.release,

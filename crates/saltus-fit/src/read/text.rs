@@ -288,8 +288,15 @@ fn of_cells<'a>(text: &str, lines: impl Iterator<Item = &'a str> + Clone) -> Opt
     let number = |line: &&str| {
         parted(line).nth(1).is_some() && parted(line).any(|cell| matches!(cell::read(cell, false), Cell::Number(_)))
     };
-    let width = parted(lines.clone().find(number)?).count();
-    let alike = |line: &&str| parted(line).count() == width;
+    // Behind the cells of a row a remark may stand.
+    let remarked = |line: &str| parted(line).last().is_some_and(|cell| cell::read(cell, false) == Cell::Words);
+    let counts: Vec<usize> = lines.clone().filter(number).map(|line| parted(line).count()).collect();
+    let often = |n: usize| counts.iter().filter(|count| **count == n).count();
+    let width = counts.iter().copied().rev().max_by_key(|&n| often(n))?;
+    let alike = |line: &&str| match parted(line).count() {
+        n if n == width => true,
+        n => n == width + 1 && number(line) && remarked(line),
+    };
     let rows = lines.clone().filter(alike).filter(number).count();
     // A title may hold any comma.
     let table = lines.clone().filter(alike).count();

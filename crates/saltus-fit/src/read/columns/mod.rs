@@ -83,7 +83,7 @@ impl Column {
     }
 
     /// Whether its numbers are hundredths.
-    pub(super) fn of_hundredths(&self) -> bool {
+    pub(in crate::read) fn of_hundredths(&self) -> bool {
         self.heading.has(Atom::Percent) || self.unit.is_some_and(|unit| unit.scale == Scale::Percent)
     }
 
@@ -433,6 +433,17 @@ impl Columns {
                     seen.push((index, value));
                 }
                 self.leave(coarser, Why::Elsewhere);
+                continue;
+            }
+            // A distance from above and the height that it leaves add up to the same in every row.
+            let distance = |n: usize| self.columns[n].heading.has(Atom::Distance);
+            let (first, of) = (*before, distance(index));
+            if of != distance(first) && self.add_up_to_one(region, first, index) {
+                if !of {
+                    seen.retain(|(n, _)| *n != first);
+                    seen.push((index, value));
+                }
+                self.leave(if of { index } else { first }, Why::Elsewhere);
                 continue;
             }
             // Of the places of a film one axis may lie still.

@@ -81,6 +81,16 @@ impl Columns {
         alike.then_some(if coarser { one } else { other })
     }
 
+    /// Whether two columns add up to the same in every row, to their last digits.
+    pub(super) fn add_up_to_one(&self, region: &Region<'_>, one: usize, other: usize) -> bool {
+        let sum = |&row: &usize| {
+            let ((a, half), (b, rest)) = (self.written(region, row, one)?, self.written(region, row, other)?);
+            Some((a + b, 2.0 * (half + rest)))
+        };
+        let sums: Vec<(f64, f64)> = region.rows.iter().filter_map(sum).collect();
+        sums.len() > 1 && sums.iter().all(|(sum, off)| (sum - sums[0].0).abs() <= *off)
+    }
+
     /// The number of a cell in SI units, and half a unit in its last place.
     pub(in crate::read) fn written(&self, region: &Region<'_>, row: usize, column: usize) -> Option<(f64, f64)> {
         let Cell::Number(m) = region.view.read(row, column) else { return None };

@@ -33,6 +33,11 @@ impl Columns {
             // A number behind a trial, or a letter or a number behind one name of balls whose drops
             // are level, tells no balls apart: `golf ball trial 1`, `ball A`.
             let counted = || {
+                // `1`, `2`, `3` below the name of balls at large.
+                let once = rows.len() >= SEVERAL && cells().count() == rows.len();
+                if once && region.counts(index) && cells().collect::<HashSet<_>>().len() == rows.len() {
+                    return self.one_height(region).then_some(());
+                }
                 let parts: Option<Vec<(&str, &str)>> = cells().map(|cell| cell.rsplit_once(' ')).collect();
                 let parts = parts.filter(|parts| parts.len() >= SEVERAL && parts.len() == rows.len())?;
                 let apart = parts.iter().map(|(_, nth)| *nth).collect::<HashSet<_>>().len() == parts.len();

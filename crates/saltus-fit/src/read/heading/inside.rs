@@ -246,6 +246,12 @@ fn counter(text: &str, last: Option<char>) -> Option<(usize, i8, &str)> {
 /// Whether words name the COR, and neither its square nor an energy.
 pub(super) fn is_cor(words: &[Word]) -> bool {
     let text = |w: &Word| folded(&w.text);
+    // `u(e)` is the error of it.
+    if let [first, _] = words
+        && matches!(&*text(first), "u" | "s" | "δ" | "σ")
+    {
+        return false;
+    }
     words.iter().any(|w| w.is(Atom::Cor)) && !words.iter().any(|w| text(w) == "squared" || text(w).starts_with("energ"))
 }
 

@@ -22,8 +22,13 @@ pub(super) fn without(inside: &str) -> Cow<'_, str> {
     let mut words = split(inside);
     let count = words.len();
     take(&mut words, inside, true);
+    let silent = words.iter().all(|w| matches!(w.kind, Kind::Known([Atom::Filler, ..])));
     let bare = || words.iter().map(|w| w.text.as_str()).collect::<Vec<_>>().join(" ");
-    if words.len() < count { Cow::Owned(bare()) } else { Cow::Borrowed(inside) }
+    match words.len() < count {
+        true if silent => Cow::Borrowed(""),
+        true => Cow::Owned(bare()),
+        false => Cow::Borrowed(inside),
+    }
 }
 
 /// Where a number counts repeats, and whether the word behind it is what it counts.
@@ -106,8 +111,10 @@ mod tests {
         ] {
             assert_eq!(bare(text, false), expected, "{text}");
         }
-        for text in ["3 trials", "3 drops averaged", "2 readings"] {
-            assert!(!bare(text, true).contains('3'), "{text}");
+        for (text, expected) in
+            [("3 trials", ""), ("3 drops averaged", "averaged"), ("2 readings", ""), ("of 5 drops", "")]
+        {
+            assert_eq!(without(text), expected, "{text}");
         }
         for text in [
             "bounce 3",

@@ -56,10 +56,12 @@ fn graded(view: View<'_>, row: usize, end: usize) -> Option<Header> {
     };
     let set: Vec<(Unit, f64)> = (1..width).filter_map(unit).collect();
     let apart = (0..set.len()).all(|n| set[..n].iter().all(|(of, value)| *of == set[0].0 && *value != set[n].1));
+    if set.len() < 2 || set.len() + 1 != width || !apart || view.is_number(row, 0) {
+        return None;
+    }
     // Beside the name of a quantity they are readings of it.
     let first = Heading::parse(view.cell(row, 0));
-    let key = !view.is_number(row, 0) && first.value().is_none_or(|v| v.what == What::Unsaid && v.group.is_empty());
-    if set.len() < 2 || set.len() + 1 != width || !apart || !key {
+    if first.value().is_some_and(|v| v.what != What::Unsaid || !v.group.is_empty()) {
         return None;
     }
     // Bare numbers below them, each column with some, and nothing that bears a unit.
@@ -84,6 +86,10 @@ fn graded(view: View<'_>, row: usize, end: usize) -> Option<Header> {
 /// `Rebound (cm) (1),(2),(3)`: a number in brackets behind a name that ends in the one before it is
 /// the next of that name.
 fn continued(view: View<'_>, row: usize, end: usize) -> Option<Header> {
+    // The first of them is behind its name.
+    if !view.cells(row).any(|cell| cell == "(2)") {
+        return None;
+    }
     let mut names: Vec<String> = Vec::new();
     let mut bare = false;
     for cell in view.cells(row) {

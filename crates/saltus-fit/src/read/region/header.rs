@@ -37,7 +37,10 @@ impl Header {
                 && heading.value().is_none_or(|value| value.what != What::Unsaid || value.role != Role::Reading)
         };
         let own = |n: usize| self.names.get(n).filter(|name| !self.names[..n].contains(name));
-        (0..view.width(row)).filter(|&n| view.is_number(row, n)).all(|n| own(n).is_some_and(says))
+        let numbers: Vec<usize> = (0..view.width(row)).filter(|&n| view.is_number(row, n)).collect();
+        // One number beside another name is a remark that measures: `Method, drop from 2540 mm`.
+        let several = numbers.len() > 1 || self.names.iter().filter(|name| !name.is_empty()).count() == 1;
+        several && numbers.into_iter().all(|n| own(n).is_some_and(says))
     }
 }
 
