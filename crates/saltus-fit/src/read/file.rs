@@ -143,7 +143,7 @@ fn joined_up<'a>(
                 let placed = |r: &Reading| r.height.is_some() && r.event != Event::Sample;
                 let placed = !table.metadata.speeds && table.trials.iter().any(|t| t.readings.iter().any(placed));
                 table.doubts.extend(datum.filter(|_| placed).and_then(Datum::doubt));
-                // What the table states as well is read: `dropped from 180 cm` above a release of 180.
+                // What the table holds too is read: `dropped from 180 cm` above such a release.
                 let readings = || table.trials.iter().flat_map(|t| &t.readings);
                 let released = |m: &f64| readings().any(|r| r.event == Event::Release && r.height == Some(*m));
                 let length = title.length.as_ref().filter(|(_, _, lengths)| !lengths.iter().all(released));
@@ -164,7 +164,7 @@ fn joined_up<'a>(
     if let Some(error) = failed.or(nothing.filter(|_| parts.is_empty())) {
         return Err(error);
     }
-    // Means of the drops of another table of the text, and ratios of its heights, follow from these.
+    // Means of the drops of another table of the text, and ratios of its heights, follow from it.
     let derived = pool::measured(&mut parts, |(_, table)| table);
     let lines = derived.iter().filter_map(|(_, table)| Some(table.trials.first()?.readings.first()?.line));
     for line in lines {

@@ -136,8 +136,8 @@ fn given<'a>(view: View<'a>, names: &[String]) -> Region<'a> {
 }
 
 /// A track of labels as Audacity writes it, `start, end, text` a line without a header: the labels
-/// stand at the contacts, or those that say so where another lasts longer than one. Several drops
-/// are told apart by what stands before their contacts, `drop 2 hit 1`.
+/// stand at the contacts, or those that say so where another lasts longer than one. What stands
+/// before the contacts names several drops, `drop 2 hit 1`.
 fn labels(view: View<'_>) -> Option<Vec<Region<'_>>> {
     let label = |row: usize| {
         let text = view.cell(row, 2);

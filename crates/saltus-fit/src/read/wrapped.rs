@@ -72,8 +72,8 @@ pub(super) fn pointed(text: &str) -> Option<String> {
     text.lines().any(|line| read(line).is_some()).then(|| text.lines().map(bare).collect::<Vec<_>>().join("\n") + "\n")
 }
 
-/// A text of Markdown, with a table drawn in bars below a rule, whose headings are titles, `## Wood`
-/// above the table of it; `None` where there are none.
+/// A text of Markdown, with a table drawn in bars below a rule, whose headings are titles, `##
+/// Wood` above the table of it; `None` where there are none.
 pub(super) fn headed(text: &str) -> Option<String> {
     let rule = |line: &str| {
         let bare = line.trim();

@@ -61,7 +61,7 @@ impl Columns {
     }
 
     /// `Time to rest, trial 1 (s)` beside `trial 2 (s)`: columns behind the first trial that say no
-    /// more than which trial they are, or that they are the mean, and its unit, are of its quantity.
+    /// more than which trial they are, or that they are the mean, and its unit, have its quantity.
     pub(super) fn of_one_name(&mut self) {
         let nth = |v: &Value| v.trial.rsplit(' ').next().and_then(|n| n.parse::<usize>().ok());
         for index in 0..self.columns.len() {
