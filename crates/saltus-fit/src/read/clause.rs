@@ -239,7 +239,12 @@ fn begun(text: &str) -> Option<Unit> {
     let ends = text.char_indices().filter(|(_, c)| c.is_whitespace()).map(|(at, _)| text.split_at(at));
     // Before a unit the inch is a preposition.
     let whole = |rest: &str| rest.split_whitespace().next().is_none_or(|next| Unit::parse(next).is_none());
-    let (found, rest) = ends.filter(|(_, rest)| whole(rest)).find_map(|(head, rest)| Some((unit(head)?, rest)))?;
+    let measured = |head: &str| {
+        let last = head.rsplit(char::is_whitespace).next().unwrap_or_default();
+        Unit::parse(last.trim_matches(['(', ')', '[', ']', ','])).is_some()
+    };
+    let mut ends = ends.filter(|(head, rest)| measured(head) && whole(rest));
+    let (found, rest) = ends.find_map(|(head, rest)| Some((unit(head)?, rest)))?;
     let released = split(rest).iter().any(|word| word.is(Atom::Release)) && !measures(rest);
     (!released && !split(rest).iter().any(turns)).then_some(found)
 }

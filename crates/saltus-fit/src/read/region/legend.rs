@@ -32,11 +32,13 @@ impl Legend {
 fn stated(clause: &str) -> Option<(String, String)> {
     let (sign, words) = clause.split_once(['=', ':'])?;
     let sign = sign.trim_matches(|c: char| c.is_whitespace() || matches!(c, '%' | '#' | '*' | '-' | '('));
+    if !is_sign(sign) {
+        return None;
+    }
     // A sign that says what it is, or how it is worked out, needs no words.
     let words = words.trim().trim_end_matches('.');
-    let number = matches!(read(words, false), Cell::Number(_));
     let unit = sign.chars().nth(1).is_some() && Heading::parse(sign).unit.is_some();
-    if !is_sign(sign) || number || unit || words.contains(['=', '/', '√', '^']) {
+    if unit || matches!(read(words, false), Cell::Number(_)) || words.contains(['=', '/', '√', '^']) {
         return None;
     }
     // What brackets hold behind them is a remark.
