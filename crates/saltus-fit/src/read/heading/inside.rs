@@ -297,7 +297,8 @@ pub(in crate::read) fn is_sign(text: &str) -> bool {
 /// and nothing else: `21 °C`.
 pub(super) fn of_a_condition(text: &str) -> bool {
     let other = |unit: Unit| unit.dimension == Dimension::Other && !matches!(unit.scale, Scale::Energy { .. });
-    !text.contains(['(', '[']) && matches!(read(text, false), Cell::Number(m) if m.unit.is_some_and(other))
+    let begins = text.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '-' | '−'));
+    begins && !text.contains(['(', '[']) && matches!(read(text, false), Cell::Number(m) if m.unit.is_some_and(other))
 }
 
 /// Whether a text is the format of a clock: `min:sec`, `hh:mm:ss.ms`.
