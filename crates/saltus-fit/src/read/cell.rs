@@ -2,7 +2,7 @@
 //! words.
 
 use super::phrases::Phrase;
-use super::units::{Scale, Unit};
+use super::units::{Dimension, Scale, Unit};
 use super::vocabulary::{Atom, folded, meanings};
 
 /// A number in a cell.
@@ -40,6 +40,14 @@ pub(super) enum Fault {
     Turned,
     /// A bound, and no reading: `> 60`.
     Bound,
+}
+
+/// The length that a text is and nothing else, m.
+pub(super) fn length(text: &str) -> Option<f64> {
+    match read(text, false) {
+        Cell::Number(m) => m.unit.filter(|u| u.dimension == Dimension::Length && !u.unscaled()).map(|u| u.si(m.value)),
+        _ => None,
+    }
 }
 
 /// Reads a cell; `comma` says whether commas separate the cells.

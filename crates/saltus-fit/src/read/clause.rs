@@ -344,12 +344,12 @@ fn measures(text: &str) -> bool {
 pub(super) fn lengths(text: &str) -> Vec<f64> {
     let words: Vec<&str> =
         text.split_whitespace().map(|word| word.trim_matches(['(', ')', ',', ';', ':', '='])).collect();
-    let length = |text: &str| match cell::read(text, false) {
-        Cell::Number(m) => m.unit.filter(|u| u.dimension == Dimension::Length && !u.unscaled()).map(|u| u.si(m.value)),
-        _ => None,
-    };
     let apart = words.windows(2).filter(|pair| pair[0].ends_with(|c: char| c.is_ascii_digit()));
-    words.iter().filter_map(|word| length(word)).chain(apart.filter_map(|pair| length(&pair.join(" ")))).collect()
+    words
+        .iter()
+        .filter_map(|word| cell::length(word))
+        .chain(apart.filter_map(|pair| cell::length(&pair.join(" "))))
+        .collect()
 }
 
 #[cfg(test)]

@@ -17,9 +17,9 @@ use std::collections::HashMap;
 
 pub(super) use blocks::bulleted;
 pub(super) use printed::{dumped, indexed};
-use values::{LIST, length, listed_numbers, listed_values, named_list, risen, titled};
+use values::{LIST, listed_numbers, listed_values, named_list, risen, titled};
 
-use super::cell::{self, Cell};
+use super::cell::{self, Cell, length};
 use super::clause;
 use super::heading::Heading;
 use super::phrases::Phrase;

@@ -155,8 +155,14 @@ impl Phrase {
     /// The phrases of this kind, in the order of the file.
     pub(super) fn all(self) -> &'static [&'static str] {
         static ALL: OnceLock<Vec<Vec<&'static str>>> = OnceLock::new();
-        let of = |name: &str| entries().filter(|(kind, _)| *kind == name).map(|(_, phrase)| phrase).collect();
-        let all = ALL.get_or_init(|| Self::ALL.iter().map(|(name, _)| of(name)).collect());
+        let all = ALL.get_or_init(|| {
+            let mut all = vec![Vec::new(); Self::ALL.len()];
+            for (name, phrase) in entries() {
+                let kinds = all.iter_mut().zip(Self::ALL);
+                kinds.filter(|(_, (kind, _))| *kind == name).for_each(|(phrases, _)| phrases.push(phrase));
+            }
+            all
+        });
         &all[self as usize]
     }
 

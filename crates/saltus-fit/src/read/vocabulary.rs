@@ -204,6 +204,20 @@ fn single() -> impl Iterator<Item = (&'static str, &'static [Atom])> {
     words().filter(|(word, _)| !word.contains(' '))
 }
 
+/// Those that begin with the letter that a word does.
+fn beginning(word: &str) -> impl Iterator<Item = (&'static str, &'static [Atom])> {
+    type Words = HashMap<char, Vec<(&'static str, &'static [Atom])>>;
+    static ALL: OnceLock<Words> = OnceLock::new();
+    let all = ALL.get_or_init(|| {
+        let mut all = Words::new();
+        for (word, atoms) in single() {
+            all.entry(word.chars().next().unwrap_or_default()).or_default().push((word, atoms));
+        }
+        all
+    });
+    word.chars().next().and_then(|letter| all.get(&letter)).into_iter().flatten().copied()
+}
+
 /// The meanings of a word, or of two parted by a blank, in lower case without accents; `None` if it
 /// is not known.
 pub(super) fn meanings(word: &str) -> Option<&'static [Atom]> {
@@ -245,21 +259,17 @@ pub(super) fn misspelt(word: &str) -> Option<(&'static str, &'static [Atom])> {
             c => c,
         };
         let spelt: String = word.chars().map(letter).collect();
-        return single().find(|(known, _)| *known == spelt);
+        return beginning(&spelt).find(|(known, _)| *known == spelt);
     }
     let letters = word.chars().count();
     if letters + 1 < MISSPELT || word.contains(|c: char| !c.is_alphabetic()) {
         return None;
     }
-    let begins = word.chars().next();
     let near = |(known, _): &(&str, &[Atom])| {
-        if known.chars().next() != begins {
-            return false;
-        }
         let long = known.chars().count();
         long >= MISSPELT && letters.abs_diff(long) < 2 && slip(word, known)
     };
-    let mut found = single().filter(near);
+    let mut found = beginning(word).filter(near);
     let first = found.next()?;
     found.all(|(_, atoms)| atoms == first.1).then_some(first)
 }
@@ -274,7 +284,8 @@ pub(super) fn short_for(word: &str) -> Option<(&'static str, &'static [Atom])> {
     if word.chars().count() < SHORT || word.contains(|c: char| !c.is_alphabetic()) {
         return None;
     }
-    let mut found = single().filter(|(known, _)| known.starts_with(word) || consonants(known).eq(word.chars()));
+    let meant = |known: &str| known.starts_with(word) || consonants(known).eq(word.chars());
+    let mut found = beginning(word).filter(|(known, _)| meant(known));
     let first = found.next()?;
     let alike = |(_, atoms): (&str, &'static [Atom])| meaning(atoms).eq(meaning(first.1));
     (first.1.iter().all(|atom| atom.measures()) && found.all(alike)).then_some(first)

@@ -3,12 +3,13 @@
 
 use std::collections::BTreeSet;
 
+use super::super::cell::length;
 use super::super::heading::Heading;
 use super::super::phrases::Phrase;
 use super::super::sequence::LEVEL;
 use super::super::vocabulary::{Atom, folded};
 use super::super::words::{Word, split};
-use super::{Part, length, parts};
+use super::{Part, parts};
 
 /// A drop: the line that its rebound stands in, both heights as they are written, and what
 /// stands of other lengths behind them.

@@ -1,6 +1,6 @@
 //! Values in a line, parted by commas or blanks, or in the brackets of a program.
 
-use super::super::cell::{self, Cell};
+use super::super::cell::{self, Cell, length};
 use super::super::heading::{Heading, What};
 use super::super::named::bounce;
 use super::super::phrases::Phrase;
@@ -95,14 +95,6 @@ pub(super) fn risen(text: &str) -> &str {
     };
     let end = ends.filter(high).min();
     end.filter(|end| !text[*end..].contains(|c: char| c.is_ascii_digit())).map_or(text, |end| &text[..end])
-}
-
-/// The length that a text is and nothing else, m.
-pub(super) fn length(text: &str) -> Option<f64> {
-    match cell::read(text, false) {
-        Cell::Number(m) => m.unit.filter(|u| u.dimension == Dimension::Length && !u.unscaled()).map(|u| u.si(m.value)),
-        _ => None,
-    }
 }
 
 /// The numbers of a line that holds several, which blanks or commas part, and nothing else.

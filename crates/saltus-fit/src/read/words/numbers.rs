@@ -71,6 +71,6 @@ fn names(words: &[Word], n: usize) -> bool {
     let next = words.get(n + 1).is_some_and(|w| of(w, &[Atom::Rebound, Atom::Impact]));
     let silent = |atom: &Atom| matches!(atom, Atom::Filler | Atom::Note | Atom::Tool);
     let silent = |w: &Word| matches!(w.kind, Kind::Known(atoms) if atoms.iter().all(silent));
-    let named = |w: &Word| silent(w) && (!next || !filler(w) || w.text.chars().count() >= ARTICLE);
-    n > 0 && named(&words[n - 1]) && !placed
+    let article = |w: &Word| filler(w) && w.text.chars().count() < ARTICLE;
+    n > 0 && silent(&words[n - 1]) && !(next && article(&words[n - 1])) && !placed
 }
