@@ -8,7 +8,7 @@ mod noise;
 
 use film::{Ball, Contact, csv, noisy, report};
 use noise::Noise;
-use saltus_fit::{Fit, ReadOptions, Report, Table, Verdict};
+use saltus_fit::{FindingKind, Fit, ReadOptions, Report, Table, Verdict};
 
 const CORS: [fn(f64) -> f64; 4] = [|_| 0.52, |_| 0.62, |_| 0.72, |_| 0.82];
 const SCATTER: [f64; 4] = [5e-4, 1e-3, 2e-3, 3e-3];
@@ -165,4 +165,101 @@ fn a_single_impact_is_that_of_any_ball() {
         }
     }
     assert!(held + 1 >= all, "{held} of {all}");
+}
+
+/// A ball whose impacts scatter about one COR, each by its speed, which says nothing of the COR.
+fn scattering(e: f64, by: f64) -> impl Fn(f64) -> f64 {
+    move |speed| e + by * (1e4 * speed).sin()
+}
+
+/// Impacts whose CORs are a hundredth apart have one COR, somewhere between theirs; those that are
+/// a tenth apart do not.
+#[test]
+fn impacts_that_scatter_have_one_cor() {
+    let said = |by: f64, n: u64| {
+        let mut noise = Noise(700 + n);
+        let cor = scattering(0.74, by);
+        let (mut cors, mut rows) = (Vec::new(), Vec::new());
+        let (mut begun, mut top) = (0.1, 1.2 + 0.1 * noise.uniform());
+        // Flights by their formula, since the COR of each impact is to be its own.
+        let (fall, g) = ((2.0 * top / 9.81f64).sqrt(), 9.81);
+        let (mut speed, mut contact) = (g * fall, begun + fall);
+        rows.extend((0..12).map(|k| f64::from(k) / 120.0).filter(|t| *t < begun).map(|t| (t, top)));
+        let mut frame = rows.len();
+        let mut sampled = |from: f64, to: f64, height: &dyn Fn(f64) -> f64, rows: &mut Vec<(f64, f64)>| {
+            while (frame as f64) / 120.0 < to {
+                rows.push((frame as f64 / 120.0, height(frame as f64 / 120.0 - from)));
+                frame += 1;
+            }
+        };
+        sampled(begun, contact, &|t| top - 0.5 * g * t * t, &mut rows);
+        for _ in 0..6 {
+            let e = cor(speed);
+            cors.push(e);
+            speed *= e;
+            (begun, top) = (contact, speed);
+            contact += 2.0 * speed / g;
+            sampled(begun, contact, &|t| top * t - 0.5 * g * t * t, &mut rows);
+        }
+        (report(&csv(&noisy(&rows, &mut noise, 1e-3))), cors)
+    };
+    for n in 0..12 {
+        let (report, cors) = said(0.004, n);
+        let cor = report.cor().unwrap();
+        let mean = cors[..5].iter().sum::<f64>() / 5.0;
+        assert_eq!(report.verdict(), Verdict::Trusted, "{n}: {report}");
+        assert!(cor.low < mean && mean < cor.high && cor.high - cor.low < 0.06, "{n}: {mean} {report}");
+        let (report, _) = said(0.05, n);
+        assert_ne!(report.verdict(), Verdict::Trusted, "{n}: {report}");
+    }
+}
+
+/// Of a film that goes on with another drop, of the same ball or another one, only the first is
+/// fitted, and that is a doubt; a ball that is picked up, or lies, is none.
+#[test]
+fn a_film_of_two_drops_is_of_both() {
+    let ball = |drop: f64, cor: fn(f64) -> f64| Ball {
+        drop,
+        release: 0.2,
+        gravity: 9.81,
+        drag: 0.0,
+        cor,
+        contact: Contact::Instant,
+    };
+    let joined = |first: &[(f64, f64)], then: &[(f64, f64)]| {
+        let last = first.last().unwrap().0 + 1.0 / 60.0;
+        let rows: Vec<(f64, f64)> = first.iter().copied().chain(then.iter().map(|(t, h)| (t + last, *h))).collect();
+        report(&csv(&noisy(&rows, &mut Noise(5), 2e-3)))
+    };
+    let first = ball(1.2, |_| 0.8).film(60.0, 3.0);
+    let again = |report: &Report| report.findings().iter().any(|f| matches!(f.kind, FindingKind::DroppedAgain { .. }));
+    for (drop, cor) in [(1.2, CORS[3]), (1.1, CORS[1]), (0.7, CORS[0])] {
+        let report = joined(&first, &ball(drop, cor).film(60.0, 1.5));
+        assert!(again(&report) && report.verdict() == Verdict::Doubtful, "{report}");
+    }
+    let lifted: Vec<(f64, f64)> = (0..90).map(|k| (f64::from(k) / 60.0, (0.02 * f64::from(k)).min(1.0))).collect();
+    let lies: Vec<(f64, f64)> = (0..90).map(|k| (f64::from(k) / 60.0, 0.0)).collect();
+    for then in [lifted, lies, Vec::new()] {
+        let report = joined(&first, &then);
+        assert!(!again(&report) && report.verdict() == Verdict::Trusted, "{report}");
+    }
+}
+
+/// What a hand does after the bounces is no flight: it catches the ball on its way up or down,
+/// holds it there, or lifts it.
+#[test]
+fn a_hand_ends_the_flights() {
+    for (n, seconds) in (0u32..12).map(|n| (n, 1.25 + 0.08 * f64::from(n))) {
+        let ball = Ball { drop: 1.2, release: 0.1, gravity: 9.81, drag: 0.0, cor: |_| 0.78, contact: Contact::Instant };
+        let rows = ball.film(60.0, seconds);
+        let &(last, height) = rows.last().unwrap();
+        for lift in [0.0, 0.3, 1.0] {
+            let hand = |k: u32| (last + f64::from(k) / 60.0, height + lift * (f64::from(k) / 60.0).min(1.0));
+            let caught: Vec<(f64, f64)> = rows.iter().copied().chain((1..60).map(hand)).collect();
+            let report = report(&csv(&noisy(&caught, &mut Noise(n.into()), 2e-3)));
+            let cor = report.cor().unwrap_or_else(|| panic!("{seconds} {lift}: {report}"));
+            assert_eq!(report.verdict(), Verdict::Trusted, "{seconds} {lift}: {report}");
+            assert!(cor.low < 0.78 && 0.78 < cor.high && cor.high - cor.low < 0.05, "{seconds} {lift}: {report}");
+        }
+    }
 }

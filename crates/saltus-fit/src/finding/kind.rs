@@ -302,6 +302,10 @@ pub enum FindingKind {
         low: f64,
         high: f64,
     },
+    /// A film goes on with another drop, which is not fitted.
+    DroppedAgain {
+        time_s: f64,
+    },
     Rough {
         rms: f64,
         noise: f64,

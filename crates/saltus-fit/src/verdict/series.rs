@@ -1,6 +1,6 @@
 //! What the recordings amount to, and what speaks against it.
 
-use super::judgement::{Cor, Judgement, NAMED, SAME};
+use super::judgement::{Cor, Judgement, LEVEL, NAMED, SAME};
 use crate::elementary::hypot;
 use crate::finding::{Air, Basis, Finding, FindingKind, Severity, Widening};
 use crate::model::{LOSSLESS, Law, ORDINARY_DRAG, PHYSICAL_DRAG};
@@ -25,7 +25,7 @@ pub(crate) fn judge(
     series: &Series,
     (gravity, pixels): (Sourced, bool),
 ) -> (Vec<Estimate>, Vec<ModelChoice>) {
-    judgement.findings.extend(series.repairs.iter().cloned());
+    judgement.findings.extend(series.repairs.iter().chain(&series.again).cloned());
     if let Some(down) = series.falls_upwards {
         judgement.doubt(FindingKind::FallsUpwards { down });
     }
@@ -92,6 +92,13 @@ fn differs(a: Measured, b: Measured) -> bool {
     apart > 2.0 * hypot(a.standard_error, b.standard_error) && apart > SAME
 }
 
+/// What a rival that fits as well means: the interval takes it in, which is no answer where it is
+/// far outside.
+fn severity(judgement: &Judgement, rival: Measured, chosen: Measured) -> Severity {
+    let apart = (rival.value - chosen.value).abs();
+    if judgement.outside(rival.value) && apart > LEVEL { Severity::Doubt } else { Severity::Note }
+}
+
 /// The models beside the chosen one: where one fits as well with another COR, the interval takes in
 /// both.
 fn rivals(judgement: &mut Judgement, pooled: &Pooled) -> Vec<ModelChoice> {
@@ -108,8 +115,7 @@ fn rivals(judgement: &mut Judgement, pooled: &Pooled) -> Vec<ModelChoice> {
                 other: name(choice),
                 other_cor: cor.value,
             };
-            let severity = if judgement.outside(cor.value) { Severity::Doubt } else { Severity::Note };
-            judgement.findings.push(Finding::new(severity, kind));
+            judgement.findings.push(Finding::new(severity(judgement, cor, pooled.cor), kind));
             let reach = pooled.quantile * cor.standard_error;
             judgement.reach(cor.value - reach, cor.value + reach, Widening::BothModels);
         }
@@ -134,9 +140,8 @@ fn impact_time(
     if differs(was, is) {
         let (instant, lasting) = if contact.is_some() { (was, is) } else { (is, was) };
         let (cor_instant, cor_lasting) = (instant.value, lasting.value);
-        let severity = if judgement.outside(was.value) { Severity::Doubt } else { Severity::Note };
         let kind = FindingKind::ContactOpen { bic: worse, cor_instant, cor_lasting };
-        judgement.findings.push(Finding::new(severity, kind));
+        judgement.findings.push(Finding::new(severity(judgement, was, is), kind));
     }
     // Every impact takes some time.
     let allowed = Allowed::of(tracks, other);
@@ -234,20 +239,23 @@ fn allow(judgement: &mut Judgement, tracks: &[Track], pooled: &Pooled) {
     }
 }
 
-/// Whether the COR differs from impact to impact by more than errors and a hundredth; then the
-/// interval takes that in.
+/// Where the COR differs from impact to impact, the interval takes in that of each; where any two
+/// are surely apart by more than what may be called one COR, there is none.
 fn varying(judgement: &mut Judgement, pooled: &Pooled) {
     if pooled.choice.0 == Law::Constant {
         return;
     }
-    let by = |a: &&Measured, b: &&Measured| a.value.total_cmp(&b.value);
-    let (Some(least), Some(most)) = (pooled.impacts.iter().min_by(by), pooled.impacts.iter().max_by(by)) else {
-        return;
+    let surely = |(less, more): (&Measured, &Measured)| {
+        more.value - less.value - SURELY * hypot(less.standard_error, more.standard_error)
     };
-    let apart = most.value - least.value;
-    if apart > 0.01 && apart > 3.0 * hypot(most.standard_error, least.standard_error) {
-        judgement.doubt(FindingKind::ImpactsDiffer { low: least.value, high: most.value });
-        let (low, high) = (least.value - 2.0 * least.standard_error, most.value + 2.0 * most.standard_error);
+    let pairs = pooled.impacts.iter().flat_map(|less| pooled.impacts.iter().map(move |more| (less, more)));
+    let Some(apart) = pairs.max_by(|a, b| surely(*a).total_cmp(&surely(*b))) else { return };
+    if surely(apart) > LEVEL {
+        judgement.doubt(FindingKind::ImpactsDiffer { low: apart.0.value, high: apart.1.value });
+    }
+    if surely(apart) > 0.0 {
+        let (less, more) = apart;
+        let (low, high) = (less.value - 2.0 * less.standard_error, more.value + 2.0 * more.standard_error);
         judgement.reach(low, high, Widening::EveryImpact);
     }
 }

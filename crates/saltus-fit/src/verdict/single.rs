@@ -1,6 +1,6 @@
 //! The COR of heights alone or of times alone, with what speaks against it.
 
-use super::judgement::{Cor, Judgement, SAME};
+use super::judgement::{Cor, Judgement, LEVEL, SAME};
 use crate::compare::settings::{differ, differ_beside, drift};
 use crate::evidence::{Evidence, TrialEvidence};
 use crate::finding::{FindingKind, Widening};
@@ -121,6 +121,8 @@ fn scatter<M: OneKind>(judgement: &mut Judgement, kind: &Kind<M>, cor: &mut Cor)
         (true, ..) if kind.spread.is_some() => {}
         (true, true, None) => judgement.note(FindingKind::SpreadDecides { readings, times }),
         (true, true, Some(_)) => {}
+        // Bounces that scatter by little have one COR, whose error allows for it.
+        (true, false, Some(scatter)) if scatter * cor.value <= LEVEL => {}
         (true, false, Some(_)) => judgement.doubt(misfit),
         (true, false, None) => {
             judgement.doubt(misfit);

@@ -1,6 +1,6 @@
 //! What other models of the same readings mean for the COR and the verdict.
 
-use super::judgement::{Cor, Judgement};
+use super::judgement::{Cor, Judgement, LEVEL};
 use crate::compare::rivals::Compared;
 use crate::elementary::hypot;
 use crate::finding::{Basis, Cause, Finding, FindingKind, Severity, Untried, Widening};
@@ -10,8 +10,6 @@ use crate::statistics::{CLEAR, NORMAL, REJECT, WEAK};
 
 /// CORs that differ by less are the same for any purpose.
 const SAME: f64 = 0.002;
-/// A COR that changes by less over all speeds may be called one.
-const LEVEL: f64 = 0.02;
 
 /// Models that suppose the same kind of thing: the best of them speaks for all.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -101,12 +99,13 @@ impl Open<'_> {
         chance.is_none_or(|p| p < REJECT) && model.bic < 0.0
     }
 
-    /// Whether a model answers outside the interval: one within it is no other answer.
+    /// Whether a model answers outside the interval: one within it, or the same for any purpose, is
+    /// no other answer.
     fn elsewhere(&self, model: &ModelChoice) -> bool {
         let own = model.speeds.is_empty().then_some(model.cor.value);
         let mut answers = own.into_iter().chain(model.speeds.iter().map(|s| s.cor));
         matches!(model.name, CorModel::Each | CorModel::Missed)
-            || self.allowed.is_none_or(|cor| answers.any(|e| e < cor.low || e > cor.high))
+            || self.allowed.is_none_or(|cor| answers.any(|e| e < cor.low - SAME || e > cor.high + SAME))
     }
 }
 

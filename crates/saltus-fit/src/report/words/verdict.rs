@@ -250,6 +250,10 @@ fn recordings(kind: &FindingKind) -> Option<String> {
         FindingKind::ImpactsDiffer { low, high } => {
             format!("the COR is not the same at every impact: from {low:.3} to {high:.3} (see the impacts)")
         }
+        FindingKind::DroppedAgain { time_s } => format!(
+            "after the last bounce the ball is dropped again, and meets the floor at {time_s:.2} s: that drop is left aside; give each drop a file, or \
+             a column that numbers them"
+        ),
         FindingKind::Rough { rms, noise } => {
             format!("the motion does not follow the samples: it leaves {rms:.2e} where they scatter by {noise:.2e}")
         }

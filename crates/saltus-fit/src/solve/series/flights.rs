@@ -13,6 +13,16 @@ const PROMINENT: f64 = 0.01;
 const ABOVE_NOISE: f64 = 8.0;
 /// A minimum further above the floor than this part of the range is no contact with it.
 const FLOOR: f64 = 0.05;
+/// A ball that stays near the top of its last flight for so many times as long as a flight does is
+/// held.
+const HELD: f64 = 1.5;
+/// What rises so many times more slowly than the ball fell, by its height over the square of the
+/// time, is in a hand.
+const SLOW: f64 = 3.0;
+/// A ball that falls from its last top, but stays above the parabola by this part of the rise, is
+/// caught; until then it is above it by so many times the noise at most.
+const CAUGHT: f64 = 0.1;
+const SCATTERS: f64 = 3.0;
 /// A flight with fewer samples than this says nothing of its own.
 const FEWEST: usize = 4;
 
@@ -102,9 +112,9 @@ pub(super) fn cut(times: &[f64], heights: &[f64]) -> Result<Flights, NoFlights> 
     // than the floor was met.
     let leading = minima.iter().take_while(|&&i| high(i)).count();
     minima.drain(..leading);
-    if let Some(n) = minima.iter().position(|&i| high(i)) {
-        minima.truncate(n);
-    }
+    let aloft = minima.iter().position(|&i| high(i));
+    let ended = aloft.map_or(times.len(), |n| minima[n]);
+    minima.truncate(aloft.unwrap_or(minima.len()));
     let Some(&first) = minima.first() else { return Err(NoFlights::NoBounce) };
     let begin = begin(times, &smooth, first, noise);
     let mut starts = vec![begin];
@@ -115,12 +125,23 @@ pub(super) fn cut(times: &[f64], heights: &[f64]) -> Result<Flights, NoFlights> 
         }
         starts.push(contact);
     }
+    // A flight that comes up higher than the one before it is no rebound: a hand lifts the ball.
+    let high = |n: usize| {
+        let to = minima.get(n).copied().unwrap_or(ended);
+        smooth[starts[n]..to].iter().copied().fold(f64::NEG_INFINITY, f64::max)
+    };
+    if let Some(lifted) = (2..starts.len()).find(|&n| high(n) > high(n - 1) + least) {
+        starts.truncate(lifted);
+    }
     let contacts = starts.len() - 1;
     if contacts == 0 {
         return Err(NoFlights::TooFew);
     }
-    let ended = if contacts < minima.len() { minima[contacts] } else { times.len() };
-    let mut end = end(&smooth, starts[contacts], ended, floor, least);
+    let ended = minima.get(contacts).copied().unwrap_or(ended);
+    // Heights over the squares of their times are alike for all flights, to within what is taken
+    // off the fall of a ball that was held.
+    let fall = (smooth[begin] - smooth[first]) / (times[first] - times[begin]).powi(2);
+    let mut end = end((times, &smooth), (starts[contacts], ended), floor, (least, noise), fall / SLOW);
     // The last flight may be cut short; if hardly any of it is recorded, the series ends at its
     // contact.
     if end < starts[contacts] + FEWEST {
@@ -157,15 +178,42 @@ fn begin(times: &[f64], heights: &[f64], contact: usize, noise: f64) -> usize {
     if held { falling + 1 } else { top }
 }
 
-/// One past the last sample of the last flight: where it nears the floor again, is caught, or the
-/// series ends.
-fn end(heights: &[f64], contact: usize, ended: usize, floor: f64, least: f64) -> usize {
+/// One past the last sample of the last flight: where it nears the floor again, is caught or held,
+/// or the series ends.
+fn end(
+    (times, heights): (&[f64], &[f64]),
+    (contact, ended): (usize, usize),
+    floor: f64,
+    (least, noise): (f64, f64),
+    slowest: f64,
+) -> usize {
     let mut top = contact;
     for i in contact..ended {
         if heights[i] > heights[top] {
             top = i;
         }
     }
+    // The part of a flight that lies near its top takes no longer than by its parabola, but where a
+    // hand holds the ball.
+    let rise = heights[top] - heights[contact];
+    if rise < slowest * (times[top] - times[contact]).powi(2) {
+        return contact;
+    }
+    let part = 0.05f64.max(4.0 * noise / rise);
+    let near = |i: &usize| heights[*i] >= heights[top] - part * rise;
+    let came = (contact..top).find(near).unwrap_or(top);
+    let left = (top..ended).find(|i| !near(i)).unwrap_or(ended);
+    let parabola = 2.0 * part.sqrt() / (1.0 - part.sqrt()) * (times[came] - times[contact]);
+    if part < 1.0 && times[left - 1] - times[came] > HELD * parabola {
+        return came;
+    }
+    // On its way down it is as high as the parabola says, but where a hand catches it.
+    let (apex, climb) = (0.5 * (times[came] + times[left - 1]), times[came] - times[contact]);
+    let fall = 1.0 - part.sqrt();
+    let above = |i: usize| heights[i] - heights[top] + rise * (fall * (times[i] - apex) / climb).powi(2);
+    let caught = (left..ended).find(|&i| above(i) > (CAUGHT * rise).max(ABOVE_NOISE * noise));
+    let followed = |i: usize| (left..i).rev().find(|&j| above(j) < SCATTERS * noise).map_or(left, |j| j + 1);
+    let ended = caught.map_or(ended, followed);
     let mut low = heights[top];
     for i in top..ended {
         low = low.min(heights[i]);

@@ -39,6 +39,8 @@ pub(crate) struct Series {
     pub(crate) refused: Vec<Finding>,
     /// What was done to put the samples in order.
     pub(crate) repairs: Vec<Finding>,
+    /// Where a ball is dropped again after the last flight that is fitted.
+    pub(crate) again: Vec<Finding>,
     /// What was stated about the way that heights count, where the ball then falls upwards.
     pub(crate) falls_upwards: Option<bool>,
 }
@@ -54,7 +56,12 @@ pub(crate) fn fit(table: &Table, repair: bool, drag: Option<f64>) -> Result<Opti
         seen = true;
         let place = at(table, n);
         let found = match track::Recording::of(n, &samples, (repair, drag)) {
-            Ok(found) => Some(found),
+            Ok(found) => {
+                let again = found.dropped_again(&samples, (repair, drag));
+                let doubt = |time_s| Finding::doubt(FindingKind::DroppedAgain { time_s }).at(place.clone());
+                series.again.extend(again.map(doubt));
+                Some(found)
+            }
             Err(track::Refusal::Flights(why)) => {
                 let samples = samples.times.len();
                 let kind = match why {

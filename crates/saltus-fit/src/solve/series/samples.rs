@@ -18,6 +18,14 @@ pub(crate) struct Samples {
     pub(crate) turned: bool,
 }
 
+impl Samples {
+    /// The samples after a time.
+    pub(super) fn after(&self, time: f64) -> Self {
+        let from = self.times.partition_point(|t| *t <= time);
+        Self { times: self.times[from..].to_vec(), heights: self.heights[from..].to_vec(), turned: self.turned }
+    }
+}
+
 /// The series of a trial, put in order and the right way up unless that was stated, with the times
 /// of its frames if `repair`, and what had to be done for it; `None` if it has none.
 pub(super) fn samples(trial: &Trial, oriented: bool, repair: bool) -> Option<(Samples, Vec<FindingKind>)> {

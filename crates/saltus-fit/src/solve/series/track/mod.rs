@@ -6,6 +6,7 @@ pub(super) mod weigh;
 
 use super::flights::{self, Flights, NoFlights};
 use super::parabolas::{Sketch, sketch};
+use super::recording::in_metres;
 use super::samples::Samples;
 use super::wild::wild;
 use crate::elementary::{asinh, atan, hypot};
@@ -97,6 +98,18 @@ impl Recording {
             (lasting, gain)
         });
         Ok(Self { instant, lasting })
+    }
+
+    /// When the ball is dropped again after the last flight: a hand alone brings it higher than
+    /// that flight did, and then it falls by the same gravity, and bounces.
+    pub(crate) fn dropped_again(&self, series: &Samples, (repair, drag): (bool, Option<f64>)) -> Option<f64> {
+        let (end, apex) = self.instant.end();
+        let later = series.after(end);
+        if !later.heights.iter().any(|h| *h > apex) {
+            return None;
+        }
+        let other = Self::of(self.instant.trial, &later, (repair, drag)).ok()?.instant;
+        in_metres(other.gravity(), self.instant.gravity()).then_some(other.scale.origin.0)
     }
 
     /// By how much the BIC of contacts that take time is better; `None` where that does not show.
@@ -214,6 +227,21 @@ impl Candidates {
 
     fn impacts(&self) -> usize {
         self.sketch.contacts.len()
+    }
+
+    /// The time of the last sample that is fitted, and the highest of its flight, in the table's
+    /// units.
+    fn end(&self) -> (f64, f64) {
+        let contact = self.sketch.contacts.last().copied().unwrap_or(0.0);
+        let flight = self.samples.iter().filter(|s| s.time >= contact);
+        let top = flight.map(|s| s.height).fold(0.0, f64::max);
+        let last = self.samples.last().map_or(0.0, |s| s.time);
+        (self.scale.origin.0 + self.scale.unit * last, self.scale.origin.1 + self.scale.range * top)
+    }
+
+    /// Gravity as the flights of the sketch have it, in the table's units.
+    fn gravity(&self) -> f64 {
+        self.scale.range / (self.scale.unit * self.scale.unit)
     }
 
     fn fit_and_trim(&mut self, repair: bool) -> Result<(), Failure> {
