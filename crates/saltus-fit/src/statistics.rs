@@ -72,6 +72,10 @@ pub(crate) fn median(values: &mut [f64]) -> Option<f64> {
 /// would only cost time.
 pub(crate) const TELLING: usize = 1000;
 
+/// Samples a second of the fastest films in use. What is sampled faster is a sound or a force,
+/// whose times are as good as a contact is short, and not as the samples are close.
+pub(crate) const FILMED: f64 = 1000.0;
+
 /// Frame rates of cameras, 1/s; colour television's are a thousandth slower.
 pub(crate) const RATES: [f64; 12] = [24.0, 25.0, 30.0, 48.0, 50.0, 60.0, 90.0, 100.0, 120.0, 240.0, 480.0, 960.0];
 

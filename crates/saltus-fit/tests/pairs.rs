@@ -179,3 +179,23 @@ fn other_pairs_of_columns_are_not_coupled() {
         assert!(read(text).is_err(), "{text}");
     }
 }
+
+/// The time until a ball hits for the last of so many times, counted in a column, is that of this
+/// contact; where rows count differently it is not.
+#[test]
+fn hits_are_counted_beside_a_total_time() {
+    let until = |h: f64, e: f64, hits: i32| {
+        let flights: f64 = (1..hits).map(|k| 2.0 * e.powi(k)).sum();
+        (2.0 * h / 9.81).sqrt() * (1.0 + flights)
+    };
+    for (count, hits) in [("number of hits", 4), ("bounces", 3), ("number of bounces", 6)] {
+        for e in [0.6, 0.8] {
+            let mut text = format!("Ball drop times\ntrial,drop height (m),{count},total time (s)\n");
+            for (n, h) in [0.8, 0.8, 1.2, 1.6].into_iter().enumerate() {
+                text += &format!("{},{h},{hits},{:.2}\n", n + 1, until(h, e, hits) + 0.004 * (n as f64 - 1.5));
+            }
+            let cor = fit(&text).cor().unwrap().value;
+            assert!((cor - e).abs() < 0.01, "{cor} for {e}\n{text}");
+        }
+    }
+}

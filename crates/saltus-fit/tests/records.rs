@@ -7,7 +7,7 @@
 mod typed;
 
 use proptest::prelude::*;
-use saltus_fit::{Report, Verdict};
+use saltus_fit::{Fit, ReadOptions, Report, Table, Verdict};
 use typed::{fit, read, trusted};
 
 fn doubted(report: &Report, words: &str) -> bool {
@@ -245,4 +245,18 @@ fn what_holds_no_records_is_named() {
         let error = read(&text).unwrap_err().to_string();
         assert!(!error.is_empty() && error.len() < 1000, "{error}");
     }
+}
+
+/// Lists of numbers in a list that has a name are repeats, of the ball that the record is of.
+#[test]
+fn lists_within_a_list_are_repeats() {
+    let heights =
+        |e: f64, off: f64| (0..4).map(|k| format!("{:.1}", (160.0 + off) * e.powi(2 * k))).collect::<Vec<_>>();
+    let lists = |e: f64| [0.0, -1.0, 1.5].map(|off| format!("[{}]", heights(e, off).join(", "))).join(", ");
+    let ball = |name: &str, e: f64| format!(r#"{{"name": "{name}", "heights_cm": [{}]}}"#, lists(e));
+    let text = format!(r#"{{"who": "8b", "balls": [{}, {}]}}"#, ball("superball", 0.86), ball("hockey ball", 0.57));
+    let table = Table::parse("balls.json", text.as_bytes(), &ReadOptions::default()).unwrap();
+    let report = Fit::new().run(&table).unwrap();
+    let cors: Vec<f64> = report.groups().iter().map(|group| group.report.cor().unwrap().value).collect();
+    assert!(cors.len() == 2 && (cors[0] - 0.86).abs() < 0.01 && (cors[1] - 0.57).abs() < 0.01, "{report}");
 }

@@ -238,12 +238,17 @@ pub(super) fn of_clauses(text: &str) -> Option<Unit> {
 fn begun(text: &str) -> Option<Unit> {
     let ends = text.char_indices().filter(|(_, c)| c.is_whitespace()).map(|(at, _)| text.split_at(at));
     // Before a unit the inch is a preposition.
-    let whole = |rest: &str| rest.split_whitespace().next().is_none_or(|next| Unit::parse(next).is_none());
+    let next = |rest: &str| rest.split_whitespace().next().unwrap_or_default().to_owned();
+    // So it is before any word that is known: `frame in which`.
+    let leads = |head: &str, rest: &str| {
+        head.ends_with(" in") && matches!(split(&next(rest)).first(), Some(Word { kind: Kind::Known(_), .. }))
+    };
+    let whole = |head: &str, rest: &str| Unit::parse(&next(rest)).is_none() && !leads(head, rest);
     let measured = |head: &str| {
         let last = head.rsplit(char::is_whitespace).next().unwrap_or_default();
         Unit::parse(last.trim_matches(['(', ')', '[', ']', ','])).is_some()
     };
-    let mut ends = ends.filter(|(head, rest)| measured(head) && whole(rest));
+    let mut ends = ends.filter(|(head, rest)| measured(head) && whole(head, rest));
     let (found, rest) = ends.find_map(|(head, rest)| Some((unit(head)?, rest)))?;
     let released = split(rest).iter().any(|word| word.is(Atom::Release)) && !measures(rest);
     (!released && !split(rest).iter().any(turns)).then_some(found)
@@ -291,7 +296,9 @@ fn unit(text: &str) -> Option<Unit> {
     let value = heading.value().filter(|_| heading.unknown.is_empty() && !heading.has(Atom::Release))?;
     let unit = heading.unit.filter(|unit| value.what.dimension() == Some(unit.dimension) && !unit.unscaled());
     let counted = text.contains(|c: char| c.is_ascii_digit());
-    let several = heading.text.trim().contains(' ') && value.at == At::Row && value.role == Role::Reading;
+    // `first rebound height in cm`: of the rebounds of each row there is one.
+    let each = matches!(value.at, At::Row | At::Nth(1));
+    let several = heading.text.trim().contains(' ') && each && value.role == Role::Reading;
     unit.filter(|_| several && !counted)
 }
 

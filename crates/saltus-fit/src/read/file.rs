@@ -25,6 +25,7 @@ use super::{Event, Metadata, ReadOptions, Reading, Table, assemble, pool, said};
 use crate::error::TableError;
 use crate::finding::{Doubt, Note};
 use crate::quantity::Ball;
+use crate::statistics::FILMED;
 
 /// A track that moves less than this part of what the liveliest does is not the ball.
 const MOVES: f64 = 0.5;
@@ -236,8 +237,7 @@ fn one(region: &mut Region<'_>, options: &ReadOptions, metadata: Metadata) -> Re
         said::of_two_ends(&columns),
         said::repeated(region, &columns),
     ];
-    // A sound is sampled far more finely than a contact is heard.
-    let frame_rate = metadata.frame_rate.or(any).filter(|_| !columns.heard());
+    let frame_rate = metadata.frame_rate.or(any).filter(|rate| *rate <= FILMED);
     let mut table = assemble::table(region, &mut columns, rows, options, Metadata { frame_rate, ..metadata })?;
     table.metadata.averaged = averaged;
     table.metadata.ratios = columns.of_ratios();

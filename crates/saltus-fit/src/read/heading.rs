@@ -299,7 +299,16 @@ impl Heading {
         let (stem, letter, plain) = parted(text)?;
         let other =
             |name: &String| parted(name).is_some_and(|(of, l, _)| of == stem && !l.eq_ignore_ascii_case(&letter));
-        header.iter().any(other).then(|| Self::parse(&plain).called(text))
+        let mut heading = header.iter().any(other).then(|| Self::parse(&plain).called(text))?;
+        // Where several bodies are followed, each column is of the one that it names.
+        let body = |name: &String| parted(name).map(|(of, _, _)| of).filter(|of| of.contains(char::is_alphabetic));
+        let several = header.iter().filter_map(body).any(|of| of != stem);
+        let name = stem.trim_end_matches(['_', ' ', '.', '-', '/']);
+        if let (true, true, Meaning::Value(value)) = (several, name != stem, &mut heading.meaning) {
+            let run = split(name).iter().any(|word| word.is(Atom::Trial));
+            *(if run { &mut value.trial } else { &mut value.group }) = name.to_owned();
+        }
+        Some(heading)
     }
 
     /// `h_i` beside `h_f`: before and after, where `h_i` by itself is counted.

@@ -202,7 +202,9 @@ fn gathered(name: &str, node: &Node, above: &str, found: &mut Vec<Part>) {
     if columns.len() > 1 {
         return push(side_by_side(&columns));
     }
+    let repeats: Vec<(String, Vec<&str>)> = node.members().iter().flat_map(repeated).collect();
     let columns = node.members().iter().filter_map(|(name, list)| Some((name.as_str(), list.cells()?)));
+    let columns = columns.chain(repeats.iter().map(|(name, cells)| (name.as_str(), cells.clone())));
     let columns: Vec<(&str, Vec<&str>)> = columns.filter(|(_, cells)| !cells.is_empty()).collect();
     let stated = node.members().iter().filter_map(|(name, node)| Some((name, node.cell()?)));
     let stated: String = stated.map(|(name, cell)| format!("{name}: {cell}\n")).collect();
@@ -234,6 +236,15 @@ fn gathered(name: &str, node: &Node, above: &str, found: &mut Vec<Part>) {
         let called = member.members().iter().filter_map(|(_, node)| node.cell()).find(words);
         tables(&called.map_or_else(|| format!("trial {}", n + 1), str::to_owned), member, above, found);
     }
+}
+
+/// Lists of numbers within a list that has a name, as columns of that name, each of a trial.
+fn repeated((name, node): &(String, Node)) -> Vec<(String, Vec<&str>)> {
+    let Node::List(list) = node else { return Vec::new() };
+    let rows: Option<Vec<Vec<&str>>> = list.iter().map(Node::cells).collect();
+    let numbers = |rows: &Vec<Vec<&str>>| rows.iter().flatten().all(|cell| cell.parse::<f64>().is_ok());
+    let named = |(n, cells)| (format!("trial {} {name}", n + 1), cells);
+    rows.filter(numbers).unwrap_or_default().into_iter().enumerate().take(MANY).map(named).collect()
 }
 
 /// Names with their cells.

@@ -7,11 +7,12 @@ use super::cell::Cell;
 use super::columns::{Column, Columns, Kind};
 use super::grid::shown;
 use super::heading::{At, DropHeight, Meaning, Role, What};
+use super::phrases::Phrase;
 use super::region::Region;
 use super::rows::{Row, Rows};
 use super::sequence::LEVEL;
 use super::units::Dimension;
-use super::vocabulary::Atom;
+use super::vocabulary::{Atom, folded};
 use super::words::split;
 use crate::error::TableError;
 use crate::statistics::median;
@@ -255,7 +256,8 @@ fn arrives(columns: &Columns, track: &Track) -> bool {
         });
         let heading = &column.heading;
         let to = || split(&heading.text).iter().any(|word| word.text == "to");
-        timed && (heading.has(Atom::Rest) || heading.has(Atom::Release) || to())
+        let total = column.holds(What::Total);
+        timed && (total || heading.has(Atom::Rest) || heading.has(Atom::Release) || to())
     };
     track.release.is_some() && matches!(track.nth.as_slice(), [index] if until(*index))
 }
@@ -318,7 +320,7 @@ fn misread(region: &Region<'_>, columns: &Columns, rows: &Rows) -> Option<TableE
 fn beside(region: &Region<'_>, columns: &Columns, rows: &Rows) -> Option<TableError> {
     let (index, column, _) = columns.values().find(|(_, _, v)| v.role == Role::Reading)?;
     let keyed = columns.one(&Kind::Trial).is_some() || columns.columns.iter().any(|c| c.kind == Kind::Setting);
-    let named = column.heading.has(Atom::Impact) || column.heading.has(Atom::Between);
+    let named = column.heading.has(Atom::Impact) || column.heading.has(Atom::Between) || heard(region, columns, rows);
     let other = columns.columns.iter().enumerate().find(|(n, c)| {
         let measures = matches!(c.heading.meaning, Meaning::Aside(Why::Other)) || !c.heading.unknown.is_empty();
         let numbers = || rows.rows.iter().any(|row| region.view.is_number(row.at, *n));
@@ -334,6 +336,16 @@ fn beside(region: &Region<'_>, columns: &Columns, rows: &Rows) -> Option<TableEr
                  times, or with --fps and 'y' for a name",
             ),
     )
+}
+
+/// Whether the times of the rows are those of sounds, by how loud these are, which stands beside
+/// them: but not those of samples, which are as far apart as one another.
+fn heard(region: &Region<'_>, columns: &Columns, rows: &Rows) -> bool {
+    let loud = |text: &str| split(text).iter().any(|word| Phrase::Sound.is(&folded(&word.text)));
+    let Some((clock, _, _)) = columns.values().find(|(_, _, v)| v.what == What::Time) else { return false };
+    let times: Vec<f64> = rows.rows.iter().filter_map(|row| region.view.number(row.at, clock)).collect();
+    let apart = times.windows(3).any(|three| three[2] - three[1] < LEVEL * (three[1] - three[0]));
+    apart && columns.columns.iter().any(|c| c.value().is_none() && loud(&c.heading.text))
 }
 
 /// Whether a remark is a day, or a number, that is another in every row: as those of readings that

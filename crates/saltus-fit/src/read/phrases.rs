@@ -100,10 +100,12 @@ pub(super) enum Phrase {
     Ditto,
     /// What was measured keeps a rule.
     Passed,
+    /// What a sensor measures along its beam.
+    Ranging,
 }
 
 impl Phrase {
-    const ALL: [(&'static str, Self); 46] = [
+    const ALL: [(&'static str, Self); 47] = [
         ("missing", Self::Missing),
         ("about", Self::About),
         ("half", Self::Half),
@@ -150,6 +152,7 @@ impl Phrase {
         ("called", Self::Called),
         ("ditto", Self::Ditto),
         ("passed", Self::Passed),
+        ("ranging", Self::Ranging),
     ];
 
     /// The phrases of this kind, in the order of the file.

@@ -185,12 +185,20 @@ pub(super) fn unsaid(region: &Region<'_>, columns: &Columns, options: &ReadOptio
     let ball = texts(region).any(names_ball);
     let told = |text: &str| says(text) || ball && hits_floor(text) || fast && met(text);
     let column = open.map(|(_, column, _)| column).or_else(parts).filter(|_| !texts(region).any(told))?;
-    let ball = || texts(region).any(|text| is_of_a_ball(text) || Ball::named(text).is_some());
+    let ball = || texts(region).any(|text| is_of_a_ball(text) || Ball::named(text).is_some()) || filed(region);
     (!(ball() && repeats(region, columns))).then(|| Doubt::Unsaid { column: shown(&column.heading.text) })
 }
 
+/// Whether the file is named after a ball, or its sport: `phyphox_golf_3.csv`.
+fn filed(region: &Region<'_>) -> bool {
+    let words: Vec<&str> =
+        stem(region.view.grid.name).split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).collect();
+    (1..=3).any(|count| words.windows(count).any(|words| Ball::named(&words.join(" ")).is_some()))
+}
+
 /// Whether the numbers of a table that names a ball bounce themselves: every row keeps the same
-/// part of what was before it, of a height or an energy or, one below the other, of a duration.
+/// part of what was before it, of a height or an energy or, one below the other, of a duration, or
+/// of what lies between two times.
 /// Of speeds, and of bodies that collide, the part may be of another law.
 fn repeats(region: &Region<'_>, columns: &Columns) -> bool {
     let collide = |text: &str| split(text).iter().any(|word| word.is(Atom::Impact) && word.is(Atom::Loose));
@@ -222,8 +230,14 @@ fn repeats(region: &Region<'_>, columns: &Columns) -> bool {
             heights.filter_map(|(n, v, row)| part(n, row, from(v), number(row, n))).collect()
         }
         [] => {
-            let steps = others.iter().flat_map(|(n, _)| rows.windows(2).map(move |pair| (*n, pair)));
-            steps.filter_map(|(n, pair)| part(n, pair[0], number(pair[0], n), number(pair[1], n))).collect()
+            let rises = |n: usize| rows.windows(2).all(|pair| number(pair[0], n) < number(pair[1], n));
+            let (clocks, steps): (Vec<_>, Vec<_>) = others.iter().partition(|(n, v)| v.what == What::Time && rises(*n));
+            let steps = steps.iter().flat_map(|(n, _)| rows.windows(2).map(move |pair| (*n, pair)));
+            let steps = steps.filter_map(|(n, pair)| part(n, pair[0], number(pair[0], n), number(pair[1], n)));
+            let flight = |n: usize, from: usize, to: usize| Some(number(to, n)? - number(from, n)?);
+            let flights = clocks.iter().flat_map(|(n, _)| rows.windows(3).map(move |three| (*n, three)));
+            let flights = flights.filter_map(|(n, r)| part(n, r[0], flight(n, r[0], r[1]), flight(n, r[1], r[2])));
+            steps.chain(flights).collect()
         }
         _ => return false,
     };

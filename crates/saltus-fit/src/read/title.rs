@@ -22,6 +22,8 @@ pub(super) struct Stated {
     pub(super) name: String,
     /// Frames a second, and the line.
     pub(super) fps: Option<(f64, u64)>,
+    /// Whether a line says that numbers of frames stand below it.
+    frames: bool,
     /// The height of release, and the line.
     pub(super) drop: Option<(DropHeight, u64)>,
     /// The units of all times and of all heights.
@@ -93,7 +95,12 @@ pub(super) fn stated(region: &Region<'_>) -> Stated {
         }
         let of_clauses = || of_clauses(&text).into_iter().collect();
         Unit::listed(&text).unwrap_or_else(of_clauses).into_iter().for_each(|unit| found.of_all(unit));
+        found.frames |= cells.iter().any(|cell| counts_frames(cell));
         found.name = if cells.len() == 1 && row < region.header_row { text } else { found.name };
+    }
+    // Numbers of frames that a title speaks of are times, where it names no other quantity.
+    if let (true, Some((fps, _)), (None, None)) = (found.frames, found.fps, found.units) {
+        found.units.0 = Some(Unit::frame(fps));
     }
     found
 }
@@ -141,6 +148,14 @@ impl Stated {
         };
         *place = place.or(Some(unit));
     }
+}
+
+/// Whether a clause of a title is of frames, all of its words being understood: `frame in which the
+/// ball touches the floor`.
+fn counts_frames(text: &str) -> bool {
+    let parts = clauses(text).flat_map(|part| part.split(" - "));
+    let mut of_frames = parts.map(Heading::parse).filter(|h| h.has(Atom::Frame) && h.value().is_none());
+    of_frames.any(|heading| heading.unknown.is_empty() && (heading.rate.is_none() || heading.has(Atom::Number)))
 }
 
 /// The rate that a column of its own states, the same in all of its cells.

@@ -1,7 +1,7 @@
 //! What stands around a text of readings and is no part of it: the marks of a mail that is quoted,
 //! the letters and numbers at the edges of a spreadsheet, the times before the lines of a chat.
 
-use super::cell;
+use super::cell::{self, Cell};
 use super::heading::{Heading, What};
 use super::phrases::Phrase;
 use super::vocabulary::Atom;
@@ -150,7 +150,7 @@ const FRAMES: u32 = 60;
 /// but that the ball hit the floor the times are the readings. `None` where lines bear no times.
 pub(super) fn unstamped(text: &str) -> Option<String> {
     let filled = || text.lines().filter(|line| !line.trim().is_empty());
-    if let Some(times) = hits(text).or_else(|| bare_stamps(text)) {
+    if let Some(times) = hits(text).or_else(|| bare_stamps(text)).or_else(|| sent(text)) {
         return Some(times);
     }
     let stamps: Vec<Stamped<'_>> = filled().filter_map(stamped).collect();
@@ -184,6 +184,33 @@ fn hits(text: &str) -> Option<String> {
     let spelt = |(n, line)| match hit(line) {
         Some((time, _)) if n == first => format!("{heading}\r{time}"),
         Some((time, _)) => time.to_owned(),
+        None if line.trim().is_empty() => String::new(),
+        None => format!("#{line}"),
+    };
+    Some(text.lines().enumerate().map(spelt).collect::<Vec<_>>().join("\n") + "\n")
+}
+
+/// What a device sends, one number of one name a line, `14:03:22.159 -> Distance: 26 cm`, as a
+/// table of that and the time; `None` where a line says something else.
+fn sent(text: &str) -> Option<String> {
+    let exact = |time: &str| time.rsplit(':').next().is_some_and(|s| s.contains(['.', ',']));
+    let reading = |line: &'_ str| -> Option<(String, String)> {
+        let stamp = stamped(line).filter(|stamp| !stamp.chat && exact(stamp.time))?;
+        let (name, number) = stamp.said.split_once([':', '='])?;
+        let Cell::Number(sent) = cell::read(number, false) else { return None };
+        let unit = number.trim().trim_start_matches(|c: char| !c.is_alphabetic());
+        sent.unit?;
+        Some((format!("time,{} ({unit})", name.trim()), format!("{},{}", stamp.time, sent.value)))
+    };
+    let first = text.lines().position(|line| stamped(line).is_some())?;
+    let (heading, _) = text.lines().nth(first).and_then(reading)?;
+    let alike = |line: &str| line.trim().is_empty() || reading(line).is_some_and(|(name, _)| name == heading);
+    if !text.lines().skip(first).all(alike) || text.lines().nth(first + 2).is_none() {
+        return None;
+    }
+    let spelt = |(n, line): (usize, &str)| match reading(line).filter(|_| n >= first) {
+        Some((_, row)) if n == first => format!("{heading}\r{row}"),
+        Some((_, row)) => row,
         None if line.trim().is_empty() => String::new(),
         None => format!("#{line}"),
     };

@@ -6,7 +6,7 @@ use crate::finding::Note;
 use crate::read::aside::Why;
 use crate::read::cell::Cell;
 use crate::read::grid::shown;
-use crate::read::heading::{At, Role, What};
+use crate::read::heading::{At, Role, Value, What};
 use crate::read::region::Region;
 use crate::read::sequence::{LEVEL, of_samples};
 use crate::read::units::{Scale, Unit};
@@ -21,7 +21,7 @@ impl Columns {
         let stands = |role: Role| !matches!(role, Role::Error | Role::Lost);
         let read = |c: &super::Column| c.heading.unknown.is_empty() && c.value().is_some_and(|v| stands(v.role));
         let released = |c: &super::Column| c.value().is_some_and(|v| v.what == What::Height && v.at == At::Release);
-        let lost = |c: &super::Column| c.heading.unit.is_some_and(|unit| unit.scale == Scale::Percent);
+        let lost = super::Column::of_hundredths;
         let named = |n: &usize| self.columns[*n].kind == Kind::Aside && self.columns[*n].heading.energy.is_some();
         let (parts, joules): (Vec<usize>, Vec<usize>) =
             (0..self.columns.len()).filter(named).partition(|&n| lost(&self.columns[n]));
@@ -99,6 +99,9 @@ impl Columns {
     fn promote(&mut self, index: usize) {
         let name = shown(&self.columns[index].heading.text);
         if let Some(value) = self.columns[index].heading.energy.clone() {
+            if self.columns[index].of_hundredths() {
+                self.columns[index].unit = Unit::parse("%");
+            }
             self.columns[index].kind = Kind::Value(value);
             self.aside.retain(|aside| aside.name != name);
         }
@@ -132,7 +135,8 @@ impl Columns {
     /// Numbers of samples, as sound programs count them, are a clock, as those of frames are.
     pub(super) fn sampled(&mut self, region: &Region<'_>) {
         // Beside heights they are specimens.
-        if self.values().any(|(_, c, v)| v.what != What::Unsaid && c.heading.unit.is_some() && v.role != Role::Error) {
+        let other = |v: &Value| !matches!(v.what, What::Unsaid | What::Time) && v.role != Role::Error;
+        if self.values().any(|(_, c, v)| other(v) && c.heading.unit.is_some()) {
             return;
         }
         let cells = |n: usize| region.rows.iter().map(move |&row| region.cell(row, n));
@@ -148,11 +152,6 @@ impl Columns {
                 self.leave(index, Why::Other);
             }
         }
-    }
-
-    /// Whether the clock counts samples of a sound.
-    pub(in crate::read) fn heard(&self) -> bool {
-        self.values().any(|(_, c, v)| v.what == What::Time && c.heading.has(Atom::Sample))
     }
 
     /// Whether the times of the rows are those of the tops beside them, by the name of the times or

@@ -41,9 +41,27 @@ impl Columns {
         self.gates(region);
         self.in_and_out();
         self.contacts(region);
+        self.durations(region);
+        self.ranged(region);
         self.flights(region);
         self.up_to_from(region);
+        self.until_hit(region);
         self.until_rest(region);
+    }
+
+    /// `number of hits` of which every row has as many, beside the height of release and a time:
+    /// that until the ball hits for the last of them.
+    fn until_hit(&mut self, region: &Region<'_>) {
+        let Some((number, _)) = self.number() else { return };
+        let counts: Vec<&str> = region.rows.iter().map(|&row| region.cell(row, number)).collect();
+        let alike = counts.len() > 1 && counts.iter().all(|count| *count == counts[0]);
+        let Some(hits) = counts.first().filter(|_| alike).and_then(|count| count.parse().ok()) else { return };
+        let timed = |v: &Value| matches!(v.what, What::Total | What::Time) && v.at == At::Row;
+        let total = self.only(|c| c.value().is_some_and(timed));
+        if let Some(total) = total.filter(|_| hits > 1 && self.any(What::Height, Some(At::Release))) {
+            self.becomes(total, What::Total, At::Nth(hits));
+            self.leave(number, Why::Other);
+        }
     }
 
     /// The only height beside the time until all is quiet, or that of the first flight, of several
@@ -153,6 +171,42 @@ impl Columns {
             self.becomes(on, What::Time, At::Row);
             self.columns[off].heading.unknown.clear();
             self.leave(off, Why::Elsewhere);
+        }
+    }
+
+    /// `contact time (ms)` beside a clock: a time shorter than what lies between those of the clock is
+    /// how long each contact lasts.
+    fn durations(&mut self, region: &Region<'_>) {
+        let read = |v: &Value| v.what == What::Time && v.at == At::Row && v.role == Role::Reading && v.trial.is_empty();
+        let times: Vec<usize> = self.values().filter(|(_, _, v)| read(v)).map(|(n, _, _)| n).collect();
+        let &[one, other] = times.as_slice() else { return };
+        let seconds = |n: usize| -> Option<Vec<f64>> {
+            let unit = self.columns[n].unit?;
+            region.rows.iter().map(|&row| Some(unit.si(region.view.number(row, n)?))).collect()
+        };
+        let Some((one_s, other_s)) = seconds(one).zip(seconds(other)) else { return };
+        let within = |brief: &[f64], clock: &[f64]| {
+            clock.len() > 2 && clock.windows(2).zip(brief).all(|(pair, brief)| *brief < SHORT * (pair[1] - pair[0]))
+        };
+        let brief = match (within(&one_s, &other_s), within(&other_s, &one_s)) {
+            (true, false) => one,
+            (false, true) => other,
+            _ => return,
+        };
+        self.columns[brief].heading.unknown.clear();
+        self.leave(brief, Why::Other);
+    }
+
+    /// `range_mm` beside a clock and no other length: the distance that a sensor measures, and no
+    /// range of readings.
+    fn ranged(&mut self, region: &Region<'_>) {
+        let long = |c: &Column| c.unit.is_some_and(|unit| unit.dimension == Dimension::Length);
+        let Some(index) = self.only(long).filter(|&n| self.columns[n].says(Phrase::Ranging)) else { return };
+        let clock = self.any(What::Time, Some(At::Row)) || self.one(&Kind::Frame).is_some();
+        let unread = self.columns[index].value().is_none() || !self.columns[index].heading.unknown.is_empty();
+        if clock && unread && region.rows.len() > 2 {
+            self.becomes(index, What::Height, At::Row);
+            self.columns[index].kind = Kind::Value(Value { position: true, ..Value::of(What::Height) });
         }
     }
 

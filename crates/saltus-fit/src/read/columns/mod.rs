@@ -263,6 +263,7 @@ impl Columns {
         let words = |n: usize| region.rows.iter().any(|&row| !region.view.cell(row, n).is_empty());
         let (read, wordy): (Vec<usize>, Vec<usize>) = self.values().map(|(n, _, _)| n).partition(|n| numbers(*n));
         for index in wordy.into_iter().filter(|n| !read.is_empty() && words(*n)) {
+            self.cornered(index, &read);
             let heading = &self.columns[index].heading;
             // So does a place that words name, `Ort`, of several rows each.
             let places = || {
@@ -280,6 +281,23 @@ impl Columns {
             } else {
                 let dated = self.columns[index].holds(What::Time);
                 self.leave(index, if dated { Why::Note } else { Why::Other });
+            }
+        }
+    }
+
+    /// A quantity with a unit above the names of rows is that of the columns beside them which bear
+    /// none: `Height (cm), h0, h1` above `Drop 1`.
+    fn cornered(&mut self, corner: usize, beside: &[usize]) {
+        let Some((of, unit)) = self.columns[corner].value().map(|v| v.what).zip(self.columns[corner].unit) else {
+            return;
+        };
+        for &index in beside {
+            let column = &mut self.columns[index];
+            if let Kind::Value(value) = &mut column.kind
+                && column.unit.is_none()
+                && (value.what == of || value.what == What::Unsaid)
+            {
+                (value.what, column.unit) = (of, Some(unit));
             }
         }
     }

@@ -235,6 +235,8 @@ impl Heading {
         let has = |atom| self.has(atom);
         let at = match value.at {
             At::Nth(_) => value.at,
+            // What is lost at an impact, or in a bounce.
+            _ if value.role == Role::Lost => At::Row,
             _ if !ahead(words) && (has(Atom::After) || has(Atom::Rebound)) => At::Row,
             _ if has(Atom::Before) || has(Atom::Release) || has(Atom::Impact) => At::Release,
             at => at,

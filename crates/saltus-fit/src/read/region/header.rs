@@ -57,6 +57,7 @@ pub(super) fn headers(view: View<'_>, legend: &Legend, row: usize, end: usize) -
     }
     let line = |n: usize| -> Vec<String> { view.cells(n).map(|cell| legend.words(cell).to_owned()).collect() };
     let one = line(row);
+    let one = clause_of(view, &one, row + 1..end).map_or(one, |name| vec![name]);
     let below = |n: usize| n < end && names_only(view, n);
     // Units are no names; and one name alone above several is a title.
     let names = |n: usize| view.cells(n).filter(|cell| !cell.is_empty()).count();
@@ -114,6 +115,21 @@ pub(super) fn headers(view: View<'_>, legend: &Legend, row: usize, end: usize) -
         push(names, row + 2);
     }
     found
+}
+
+/// Of a sentence above a single column, which commas part, the only clause that says what the
+/// numbers are: `superball on tile, contact times in s`.
+fn clause_of(view: View<'_>, names: &[String], mut rows: Range<usize>) -> Option<String> {
+    let single = names.len() > 1 && names.iter().all(|name| !name.is_empty());
+    if !single || rows.len() < 2 || !rows.all(|row| view.width(row) == 1 && view.is_number(row, 0)) {
+        return None;
+    }
+    let says = |name: &&String| {
+        let heading = Heading::parse(name);
+        heading.understood() && heading.value().is_some_and(|value| value.what != What::Unsaid)
+    };
+    let mut found = names.iter().filter(says);
+    found.next().filter(|_| found.next().is_none()).cloned()
 }
 
 /// The names of columns below which a unit in brackets stands alone at the end, above no number:

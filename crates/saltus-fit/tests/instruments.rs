@@ -1,0 +1,218 @@
+//! What sensors, loggers, trackers and sound programs write, and how their lists are titled.
+
+#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
+
+mod film;
+mod noise;
+mod typed;
+
+use film::{Ball, Contact, noisy};
+use noise::Noise;
+use proptest::prelude::*;
+use saltus_fit::{Fit, Method, ReadOptions, Report, Source, Table, Verdict};
+use typed::{fit, read, trusted};
+
+/// Times of contacts of a ball that first hits at `at` and then flies for `flight`, s.
+fn contacts(e: f64, (at, flight): (f64, f64), count: usize) -> Vec<f64> {
+    let mut times = vec![at];
+    for n in 0..count - 1 {
+        times.push(times[n] + flight * e.powi(n as i32));
+    }
+    times
+}
+
+fn lines(rows: impl IntoIterator<Item = String>) -> String {
+    rows.into_iter().map(|row| row + "\n").collect()
+}
+
+fn ball(cor: fn(f64) -> f64) -> Ball {
+    Ball { drop: 1.1, release: 0.2, gravity: 9.81, drag: 0.0, cor, contact: Contact::Instant }
+}
+
+fn named(name: &str, text: &str) -> Report {
+    Fit::new().run(&Table::parse(name, text.as_bytes(), &ReadOptions::default()).unwrap()).unwrap()
+}
+
+fn near(cor: f64, e: f64) -> bool {
+    (cor - e).abs() < 0.015
+}
+
+/// A device that sends one distance a line, with the time before it, is a sensor above the ball.
+#[test]
+fn lines_of_a_serial_port_are_samples() {
+    let rows = noisy(&ball(|_| 0.78).film(50.0, 2.4), &mut Noise(3), 2e-3);
+    for (name, unit, per_metre) in [("Distance", "cm", 100.0), ("dist", "mm", 1000.0), ("Abstand", "cm", 100.0)] {
+        let sent = |&(t, h): &(f64, f64)| {
+            let (minutes, seconds) = (8.0 + ((50.0 + t) / 60.0).floor(), (50.0 + t) % 60.0);
+            format!("09:{minutes:02}:{seconds:06.3} -> {name}: {:.1} {unit}", per_metre * (1.6 - h))
+        };
+        assert!(near(trusted(&lines(rows.iter().map(sent))), 0.78));
+    }
+}
+
+/// A range, or an echo, beside a clock is a distance; beside other lengths it is a statistic.
+#[test]
+fn a_range_beside_a_clock_is_a_distance() {
+    let rows = noisy(&ball(|_| 0.7).film(50.0, 2.4), &mut Noise(4), 2e-3);
+    for name in ["range_mm", "echo (mm)", "ToF range [mm]", "Sonar (mm)"] {
+        let samples = rows.iter().map(|(t, h)| format!("{:.0}\t{:.0}", 1e3 * t, 1e3 * (1.6 - h)));
+        let text = format!("# rubber ball, sensor above it\nt_ms\t{name}\n{}", lines(samples));
+        assert!(near(trusted(&text), 0.7), "{name}");
+    }
+    let text = "drop (cm),rebound (cm),range (cm)\n60,29.5,2\n90,44,1.5\n120,58.9,2\n";
+    assert!(near(trusted(text), 0.7));
+}
+
+/// Columns of several bodies, each with a place of its own, have a COR each.
+#[test]
+fn bodies_side_by_side_have_a_cor_each() {
+    let films = [ball(|_| 0.82), ball(|_| 0.6)].map(|b| noisy(&b.film(60.0, 2.4), &mut Noise(6), 1e-3));
+    let rows = || films[0].iter().zip(&films[1]).map(|(a, b)| format!("{:.4},0.1,{:.4},0.5,{:.4}", a.0, a.1, b.1));
+    for [one, other] in [["green", "white"], ["left ball", "right ball"], ["golf", "tennis"]] {
+        let text = format!("t (s),{one} x (m),{one} y (m),{other} x (m),{other} y (m)\n{}", lines(rows()));
+        let report = fit(&text);
+        let cors: Vec<f64> = report.groups().iter().map(|g| g.report.cor().unwrap().value).collect();
+        assert!(cors.len() == 2 && near(cors[0], 0.82) && near(cors[1], 0.6), "{text:.80} {report}");
+    }
+    // One body is no group.
+    let one = film::report(&film::csv(&films[0]));
+    assert!(one.groups().is_empty() && near(one.cor().unwrap().value, 0.82));
+}
+
+/// A sound is sampled a thousand times more finely than its contacts are known, a film is not.
+#[test]
+fn fine_samples_are_no_fine_readings() {
+    let source = |rate: &str| {
+        let times = contacts(0.84, (0.31, 0.52), 8).into_iter().map(|t| format!("{t:.4}"));
+        let report = fit(&format!("# ball on a plate, {rate}\ncontact time (s)\n{}", lines(times)));
+        assert_eq!(report.verdict(), Verdict::Trusted, "{report}");
+        report.sigma_time().unwrap().source
+    };
+    for rate in ["44.1 kHz", "sample rate: 2000 Hz", "48000 Hz"] {
+        assert_ne!(source(rate), Source::FrameRate, "{rate}");
+    }
+    for rate in ["240 fps", "960 fps"] {
+        assert_eq!(source(rate), Source::FrameRate, "{rate}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 32, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// How long each contact lasts stands beside when it was, in any unit and either order.
+    #[test]
+    fn durations_of_contacts_are_no_times(e in 0.6f64..0.9, lasts in 1e-4f64..8e-3, form in 0usize..4) {
+        let rows = |swapped: bool| contacts(e, (0.4, 0.6), 8).into_iter().enumerate().map(move |(n, t)| {
+            let brief = 1e3 * lasts * (1.0 + 0.05 * (n % 3) as f64);
+            if swapped { format!("{},{brief:.3},{t:.5}", n + 1) } else { format!("{},{t:.5},{brief:.3}", n + 1) }
+        });
+        let (header, swapped) = [
+            ("bounce,time (s),contact time (ms)", false),
+            ("bounce,contact time (ms),time (s)", true),
+            ("impact,t (s),time in contact (ms)", false),
+            ("bounce,impact time (s),contact time (ms)", false),
+        ][form];
+        let cor = trusted(&format!("{header}\n{}", lines(rows(swapped))));
+        prop_assert!((cor - e).abs() < 5e-3, "{header}: {cor} for {e}");
+    }
+
+    /// A sentence above a list names it, in the one of its clauses that says what the numbers are.
+    #[test]
+    fn a_clause_names_the_list_below_it(e in 0.6f64..0.92, form in 0usize..4) {
+        let title = [
+            "golf ball on stone, contact times in s",
+            "times of the bounces (s), a ball on the lab floor",
+            "steel ball, glass plate, impact times (s)",
+            "take 3, bounce times in seconds, old tennis ball",
+        ][form];
+        let text = format!("{title}\n{}", lines(contacts(e, (0.4, 0.7), 9).into_iter().map(|t| format!("{t:.4}"))));
+        prop_assert!((trusted(&text) - e).abs() < 5e-3, "{text}");
+    }
+
+    /// Numbers of frames are times where the title says what they are and how many were filmed.
+    #[test]
+    fn a_title_says_that_frames_are_counted(e in 0.6f64..0.9, form in 0usize..4) {
+        let title = [
+            "Slow motion 240 fps - frame at each contact",
+            "frame number of each bounce, 240 fps",
+            "all frame numbers (240 fps)",
+            "frame in which the ball touches the floor, filmed at 240 fps",
+        ][form];
+        let frame = |t: f64| (240.0 * t).round();
+        let (one, other) = (contacts(e, (1.0, 0.6), 7), contacts(e, (1.4, 0.63), 7));
+        let rows = one.iter().zip(&other).enumerate().map(|(n, (a, b))| format!("{},{},{}", n + 1, frame(*a), frame(*b)));
+        let report = fit(&format!("{title}\nBounce,Trial 1,Trial 2\n{}", lines(rows)));
+        prop_assert!(near(report.cor().unwrap().value, e), "{title}: {report}");
+        prop_assert_eq!(report.estimates()[0].method, Method::Times);
+    }
+
+    /// The unit in the corner of a table turned over is that of all of its columns.
+    #[test]
+    fn the_corner_names_the_unit_of_the_columns(e in 0.5f64..0.85, form in 0usize..3) {
+        let corner = ["Height (cm)", "heights / cm", "height [cm]"][form];
+        let drop = |n: usize| {
+            let heights = (0..5).map(|k| format!("{:.1}", 120.0 * e.powi(2 * k) * (1.0 + 0.004 * n as f64)));
+            format!("Drop {},{}", n + 1, heights.collect::<Vec<_>>().join(","))
+        };
+        let text = format!("{corner},h0,h1,h2,h3,h4\n{}", lines((0..3).map(drop)));
+        prop_assert!(near(trusted(&text), e), "{text}");
+    }
+
+    /// What is lost of the energy, at or in the bounce, is lost of the height.
+    #[test]
+    fn energy_is_lost_in_a_bounce(e in 0.5f64..0.9, form in 0usize..7) {
+        let heading = [
+            "energy lost (%)",
+            "energy lost in bounce (%)",
+            "energy lost at the impact (%)",
+            "% energy lost",
+            "percent energy lost in the bounce",
+            "energy loss per bounce (%)",
+            "kinetic energy lost in collision (%)",
+        ][form];
+        let lost = 100.0 * (1.0 - e * e);
+        let rows = [80.0, 110.0, 140.0].map(|from| format!("{from},{:.1}", lost + 0.002 * (from - 110.0)));
+        let text = format!("drop height (cm),{heading}\n{}", lines(rows));
+        prop_assert!(near(trusted(&text), e), "{text}");
+    }
+
+    /// Columns that are named by surfaces alone hold what the title says.
+    #[test]
+    fn the_title_says_what_surfaces_hold(e in 0.45f64..0.6, step in 0.05f64..0.1) {
+        let cors = [e, e + step, e + 2.0 * step];
+        let row = |n: usize| {
+            let heights = cors.map(|e| format!("{:.1}", 150.0 * e * e * (1.0 + 0.005 * (n as f64 - 1.0))));
+            format!("{},{}", n + 1, heights.join(","))
+        };
+        let title = "Handball dropped from 150 cm; first rebound height in cm";
+        let text = format!("{title}\nTrial,Concrete,Lino,Parquet\n{}", lines((0..4).map(row)));
+        let report = fit(&text);
+        let found: Vec<f64> = report.groups().iter().map(|g| g.report.cor().unwrap().value).collect();
+        prop_assert!(found.len() == 3 && found.iter().zip(cors).all(|(a, b)| near(*a, b)), "{text}{report}");
+    }
+}
+
+/// A file named after a ball's sport is of a ball, where its numbers bounce as one.
+#[test]
+fn a_file_may_name_the_sport() {
+    let text = |times: Vec<f64>| format!("\"Event time (s)\"\n{}", lines(times.into_iter().map(|t| format!("{t:.5}"))));
+    let bounces = text(contacts(0.86, (0.5, 0.7), 9));
+    for name in ["phyphox_golf_3.csv", "Stopwatch tennis 60cm.csv", "table-tennis.csv"] {
+        assert_eq!(named(name, &bounces).verdict(), Verdict::Trusted, "{name}");
+    }
+    let others = text(vec![0.2, 0.9, 1.4, 2.1, 2.3, 3.0, 3.1]);
+    for (name, text) in [("stopwatch.csv", &bounces), ("phyphox_golf_3.csv", &others)] {
+        assert_ne!(named(name, text).verdict(), Verdict::Trusted, "{name}");
+    }
+}
+
+/// Sounds by the times of their peaks, and how loud: contacts; samples of a wave are none.
+#[test]
+fn peaks_of_a_sound_are_contacts() {
+    let rows = contacts(0.66, (1.2, 0.7), 8).into_iter().enumerate();
+    let rows = rows.map(|(n, t)| format!("{n},{:.0},{:.2},{:.3}", 44_100.0 * t, 1e3 * t, 0.8 * 0.6f64.powi(n as i32)));
+    let report = fit(&format!(",sample,time_ms,amplitude\n{}", lines(rows)));
+    assert!(near(report.cor().unwrap().value, 0.66), "{report}");
+    let wave = (0..60).map(|n| format!("{:.3},{:.3}", 0.02 * f64::from(n), (0.9 * f64::from(n)).sin()));
+    assert!(read(&format!("time_ms,amplitude\n{}", lines(wave))).is_err_and(|e| e.is_question()));
+}
