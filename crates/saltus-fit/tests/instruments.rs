@@ -216,3 +216,65 @@ fn peaks_of_a_sound_are_contacts() {
     let wave = (0..60).map(|n| format!("{:.3},{:.3}", 0.02 * f64::from(n), (0.9 * f64::from(n)).sin()));
     assert!(read(&format!("time_ms,amplitude\n{}", lines(wave))).is_err_and(|e| e.is_question()));
 }
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Flights named by the contacts that they lie between, in words or by a dash, are of the ball
+    /// that the table names.
+    #[test]
+    fn flights_lie_between_two_contacts(e in 0.55f64..0.9, form in 0usize..6) {
+        let name = ["Time A to B (s)", "time A-B (s)", "Zeit A bis B (s)", "bounce A to B (s)", "t A-B (s)", "interval A to B (s)"];
+        let name = |n: usize| name[form].replace('A', &n.to_string()).replace('B', &(n + 1).to_string());
+        let header: Vec<String> = (1..5).map(name).collect();
+        let row = |drop: i32| {
+            let flights = (0..4).map(|k| format!("{:.4}", 0.7 * e.powi(k) * (1.0 + 0.003 * f64::from(drop))));
+            format!("{},{}", drop + 2, flights.collect::<Vec<_>>().join(","))
+        };
+        let text = format!("Lacrosse ball on the lab bench\ntrial,{}\n{}", header.join(","), lines((-1..2).map(row)));
+        prop_assert!(near(trusted(&text), e), "{text}");
+    }
+
+    /// A comment states the height of release as well as a line of the table does.
+    #[test]
+    fn comments_state_the_height_of_release(e in 0.5f64..0.85, mark in 0usize..3) {
+        let mark = ["# ", "", "// "][mark];
+        let row = |n: usize| {
+            let heights = [0.0, 0.006, -0.004].map(|off| format!("{:.3}", 1.5 * e * e * (1.0 + off + 0.001 * n as f64)));
+            format!("{},{}", n + 1, heights.join(","))
+        };
+        let text = format!("{mark}Volleyball, all drops from 1.50 m onto the gym floor\nplace,Rebound 1 (m),Rebound 2 (m),Rebound 3 (m)\n{}", lines((0..4).map(row)));
+        prop_assert!(near(fit(&text).cor().unwrap().value, e), "{text}");
+    }
+
+    /// Bare numbers behind names are in the unit of the line above them.
+    #[test]
+    fn lists_are_in_the_unit_above_them(e in 0.5f64..0.75, form in 0usize..3) {
+        let title = [
+            "Rebound heights in cm, dropped from 1.80 m",
+            "Dropped from 1.80 m onto lino, rebound read off the chart (cm)",
+            "Drop height 1.80 m\nall in cm",
+        ][form];
+        let list = |e: f64| [0.0, 0.01, -0.01, 0.005].map(|off| format!("{:.0}", 180.0 * e * e * (1.0 + off))).join(", ");
+        let text = format!("{title}\n\nred ball: {}\nblue ball: {}\n", list(e), list(e + 0.1));
+        let report = fit(&text);
+        let found: Vec<f64> = report.groups().iter().map(|g| g.report.cor().unwrap().value).collect();
+        prop_assert!(found.len() == 2 && near(found[0], e) && near(found[1], e + 0.1), "{text}{report}");
+    }
+}
+
+/// Times as far apart as one another are no contacts, whatever stands beside them.
+#[test]
+fn a_clock_of_samples_lists_no_contacts() {
+    let rows = (0..200).map(|n| format!("{:.3},{:.2}", 0.001 * f64::from(n), (0.3 * f64::from(n)).sin()));
+    for beside in ["Normal Force (N)", "acceleration (m/s²)", "voltage (V)"] {
+        assert!(
+            read(&format!("# basketball\ntime (s),{beside}\n{}", lines(rows.clone()))).is_err_and(|e| e.is_question())
+        );
+    }
+    let text = format!(
+        "steel ball\ncontact time (s)\n{}",
+        lines(contacts(0.98, (0.2, 0.4), 12).into_iter().map(|t| format!("{t:.4}")))
+    );
+    assert!(near(trusted(&text), 0.98));
+}

@@ -222,9 +222,10 @@ pub(super) fn of_clauses(text: &str) -> Option<Unit> {
     let whole =
         |text: &str| clauses(text).find_map(|part| Unit::parse(part).filter(|unit| part.len() > 1 && !unit.unscaled()));
     let of_brackets = || bracketed(text).and_then(|text| unit(text).or_else(|| inside(text)).or_else(|| whole(text)));
-    // A title ends in the unit of what stands below it: `Golf ball (cm)`.
+    // A title, or its last clause, ends in the unit of what stands below it: `Golf ball (cm)`.
     let ends = || {
-        let (title, unit) = text.trim().strip_suffix(')')?.rsplit_once('(')?;
+        let last = clauses(text).last().unwrap_or(text);
+        let (title, unit) = last.trim().strip_suffix(')')?.rsplit_once('(')?;
         let unit = Unit::parse(unit.trim()).filter(|unit| !unit.unscaled())?;
         let plain = title.contains(char::is_alphabetic) && !title.contains(|c: char| c.is_ascii_digit());
         (plain && matches!(unit.dimension, Dimension::Length | Dimension::Time)).then_some(unit)

@@ -13,11 +13,12 @@ mod spans;
 mod values;
 mod wiki;
 
+use std::borrow::Cow;
 use std::collections::HashMap;
 
 pub(super) use blocks::bulleted;
 pub(super) use printed::{dumped, indexed};
-use values::{LIST, listed_numbers, listed_values, named_list, risen, titled};
+use values::{LIST, listed_numbers, listed_values, named_list, of_one_unit, risen, titled};
 
 use super::cell::{self, Cell, length};
 use super::clause;
@@ -34,6 +35,7 @@ pub(super) fn table(text: &str) -> Option<String> {
     if text.trim_start().starts_with('<') {
         return None;
     }
+    let text = &*of_one_unit(text).map_or(Cow::Borrowed(text), Cow::Owned);
     let forms = [
         latex::table,
         laps::table,

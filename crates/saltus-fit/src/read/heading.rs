@@ -203,6 +203,7 @@ impl Heading {
             heading.unit = Unit::parse("%");
         }
         heading.respell(&mut words);
+        inside::ranges(&mut words);
         repeats::take(&mut words, &bare, false);
         heading.take_unit_word(&mut words);
         heading.of_trials(&mut words);

@@ -17,6 +17,9 @@ use super::words::split;
 use crate::error::TableError;
 use crate::statistics::median;
 
+/// So many flights that last alike are of no ball.
+const EVEN: usize = 9;
+
 /// How the readings of a table lie in it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Layout {
@@ -209,6 +212,9 @@ pub(super) fn layout(
     if !rowed && !any(|t| t.after.is_some()) {
         return Err(nothing(region, columns));
     }
+    if let Some(error) = of_samples(region, columns, rows) {
+        return Err(error);
+    }
     if numbered {
         return Ok(Layout::Numbered);
     }
@@ -336,6 +342,21 @@ fn beside(region: &Region<'_>, columns: &Columns, rows: &Rows) -> Option<TableEr
                  times, or with --fps and 'y' for a name",
             ),
     )
+}
+
+/// Times as far apart as one another are those of samples, and not of contacts.
+fn of_samples(region: &Region<'_>, columns: &Columns, rows: &Rows) -> Option<TableError> {
+    let (clock, column, _) = columns.values().find(|(_, _, v)| v.what == What::Time && v.at == At::Row)?;
+    let times: Vec<f64> = rows.rows.iter().filter_map(|row| region.view.number(row.at, clock)).collect();
+    let mut apart: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let (low, high) = apart.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), t| (low.min(*t), high.max(*t)));
+    let even = apart.len() > EVEN && high - low < (1.0 - LEVEL) * median(&mut apart)?;
+    let name = shown(&column.heading.text);
+    even.then(|| {
+        let message = format!("the times of '{name}' are evenly spaced, as those of samples, and no contacts");
+        let help = "give the heights of a film beside them, or the times of the contacts alone";
+        region.header_error(clock, message).question().help(help)
+    })
 }
 
 /// Whether the times of the rows are those of sounds, by how loud these are, which stands beside

@@ -206,7 +206,13 @@ fn repeats(region: &Region<'_>, columns: &Columns) -> bool {
         columns.values().filter(|(_, _, v)| v.role == Role::Reading).map(|(n, _, v)| (n, v)).collect();
     let of_row = |v: &Value| matches!(v.what, What::Height | What::Unsaid | What::Interval | What::Time);
     let (first, others): (Vec<_>, Vec<_>) = read.into_iter().partition(|(_, v)| v.at == At::Release);
-    if texts(region).any(collide) || others.iter().any(|(_, v)| v.at != At::Row || !of_row(v)) {
+    if texts(region).any(collide) {
+        return false;
+    }
+    if first.is_empty() && others.iter().all(|(_, v)| v.what == What::Interval && matches!(v.at, At::Nth(_))) {
+        return repeats_across(region, columns, &others);
+    }
+    if others.iter().any(|(_, v)| v.at != At::Row || !of_row(v)) {
         return false;
     }
     let number = |row: usize, n: usize| columns.written(region, row, n).map(|(number, _)| number);
@@ -247,6 +253,16 @@ fn repeats(region: &Region<'_>, columns: &Columns) -> bool {
         BOUNCES.contains(&usual) && group.iter().all(|(_, part)| (part / usual - 1.0).abs() < KEPT)
     };
     parts.len() >= ALIKE && parts.chunk_by(|a, b| a.0 == b.0).all(alike)
+}
+
+/// The same of flights that stand side by side, one after the other, a drop a row.
+fn repeats_across(region: &Region<'_>, columns: &Columns, flights: &[(usize, &Value)]) -> bool {
+    let number = |row: usize, n: usize| columns.written(region, row, n).map(|(number, _)| number);
+    let of_row =
+        |row: usize| flights.windows(2).filter_map(move |pair| Some(number(row, pair[1].0)? / number(row, pair[0].0)?));
+    let mut parts: Vec<f64> = region.rows.iter().flat_map(|&row| of_row(row)).collect();
+    let usual = median(&mut parts).unwrap_or_default();
+    parts.len() >= ALIKE && BOUNCES.contains(&usual) && parts.iter().all(|part| (part / usual - 1.0).abs() < KEPT)
 }
 
 /// CORs of balls on floors: where all rows agree on one of these, the ball bounces.

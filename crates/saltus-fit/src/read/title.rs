@@ -42,6 +42,7 @@ pub(super) fn stated(region: &Region<'_>) -> Stated {
     let comments = region.view.grid.comments().take(ROWS).flat_map(|(_, text)| clauses(text));
     let units = comments.flat_map(|text| Unit::listed(text).unwrap_or_else(|| of_clauses(text).into_iter().collect()));
     units.for_each(|unit| found.of_all(unit));
+    let commented = || region.view.grid.comments().take(ROWS).find_map(|(line, text)| Some((drop(text)?, line)));
     // Of rows that are turned over, lines by themselves state the units of all.
     if region.view.across {
         let grid = region.view.grid;
@@ -51,7 +52,7 @@ pub(super) fn stated(region: &Region<'_>) -> Stated {
         // A remark may stand beside them.
         let lines = (0..grid.rows().min(ROWS)).flat_map(|row| (0..grid.width(row)).map(move |n| (row, n)));
         let mut drops = lines.filter_map(|(row, n)| Some((drop(grid.cell(row, n))?, grid.line(row))));
-        found.drop = drops.next();
+        found.drop = drops.next().or_else(commented);
         return found;
     }
     let headings = region.header.iter().filter_map(|name| Heading::parse(name).rate);
@@ -98,6 +99,7 @@ pub(super) fn stated(region: &Region<'_>) -> Stated {
         found.frames |= cells.iter().any(|cell| counts_frames(cell));
         found.name = if cells.len() == 1 && row < region.header_row { text } else { found.name };
     }
+    found.drop = found.drop.or_else(commented);
     // Numbers of frames that a title speaks of are times, where it names no other quantity.
     if let (true, Some((fps, _)), (None, None)) = (found.frames, found.fps, found.units) {
         found.units.0 = Some(Unit::frame(fps));

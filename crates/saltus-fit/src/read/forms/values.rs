@@ -1,6 +1,7 @@
 //! Values in a line, parted by commas or blanks, or in the brackets of a program.
 
 use super::super::cell::{self, Cell, length};
+use super::super::clause;
 use super::super::heading::{Heading, What};
 use super::super::named::bounce;
 use super::super::phrases::Phrase;
@@ -49,6 +50,33 @@ pub(super) fn titled(text: &str) -> Option<String> {
         None => format!("#{line}"),
     };
     Some(lines.iter().enumerate().map(spelt).collect::<Vec<_>>().join("\n") + "\n")
+}
+
+/// Lines of a name and bare numbers, `red ball: 60, 62, 61`, below one that states the unit of all,
+/// with the unit behind each.
+pub(super) fn of_one_unit(text: &str) -> Option<String> {
+    let list = |line: &'_ str| -> Option<(String, Vec<String>)> {
+        let (name, numbers) = line.split_once(": ")?;
+        let numbers = listed_numbers(numbers)?;
+        let named = name.contains(char::is_alphabetic) && name.split_whitespace().count() < super::TOLD;
+        named.then(|| (name.to_owned(), numbers.into_iter().map(str::to_owned).collect()))
+    };
+    let first = text.lines().position(|line| list(line).is_some())?;
+    let unit = text.lines().take(first).find_map(clause::of_clauses)?;
+    let below = || text.lines().skip(first).filter(|line| !line.trim().is_empty());
+    if below().count() < 2 || !below().all(|line| list(line).is_some()) {
+        return None;
+    }
+    let words = text.lines().take(first).flat_map(|line| line.split(|c: char| !c.is_alphanumeric()));
+    let sign = words.filter(|word| !word.is_empty()).find(|word| Unit::parse(word) == Some(unit))?;
+    let spelt = |line: &str| match list(line) {
+        Some((name, numbers)) => {
+            let values: Vec<String> = numbers.iter().map(|number| format!("{number} {sign}")).collect();
+            format!("{name}: {}", values.join(", "))
+        }
+        None => line.to_owned(),
+    };
+    Some(text.lines().map(spelt).collect::<Vec<_>>().join("\n") + "\n")
 }
 
 /// The trial that a name is of, and of nothing else: `trial 2`, `Versuch B`.

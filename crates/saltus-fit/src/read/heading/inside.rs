@@ -65,6 +65,17 @@ pub(super) fn swedish(text: &str) -> Cow<'_, str> {
     found.map_or(Cow::Borrowed(text), |(at, _)| Cow::Owned(format!("{}{}", &text[..at], &text[at + 1..])))
 }
 
+/// Takes the word out that leads from a number to the next, `time 1 to 2`: from contact to contact.
+pub(super) fn ranges(words: &mut Vec<Word>) {
+    let leads = |three: &[Word]| match (&three[0].kind, &three[2].kind) {
+        (Kind::Number(from), Kind::Number(to)) => *to == from + 1 && Phrase::UpTo.is(&folded(&three[1].text)),
+        _ => false,
+    };
+    if let Some(at) = words.windows(3).position(leads) {
+        words.remove(at + 1);
+    }
+}
+
 /// The rate of frames or samples that a text states behind a number, `Frame (240 fps)`, `44.1 kHz`,
 /// in 1/s, and the text without it.
 pub(in crate::read) fn rate(text: &str) -> Option<(f64, String)> {
