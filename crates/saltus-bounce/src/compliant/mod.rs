@@ -110,6 +110,12 @@ impl<L: ContactLaw> Compliant<L> {
         &self.law
     }
 
+    /// The same ball by another law.
+    #[must_use]
+    pub const fn by<K: ContactLaw>(&self, law: K) -> Compliant<K> {
+        Compliant { mass: self.mass, gravity: self.gravity, law }
+    }
+
     /// The stage and state of a ball let go at `height` in m with `velocity` upwards in m/s;
     /// pressed into the floor if the height is negative.
     #[must_use]

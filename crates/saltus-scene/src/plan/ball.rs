@@ -1,7 +1,7 @@
 //! One ball that moves up and down over a level floor: exact arcs and closed forms, no steps.
 
 use nalgebra::{Vector2, Vector3};
-use saltus::{Automaton, JumpOf};
+use saltus::{JumpOf, Polynomial};
 
 use super::explain::Advance;
 use super::record::{Moment, With};
@@ -9,9 +9,8 @@ use super::runner::{BoundModel, Runner};
 use super::view::{Collision, SceneEvent, SceneView};
 use super::{PlanError, failed};
 use crate::Law;
-use saltus_bounce::flight::{LinearDragFlight, QuadraticDragFlight, VacuumFlight};
-use saltus_bounce::restitution::{Cor, Restitution};
-use saltus_bounce::{Ball, Floor, Mode, Phase, SmoothFlight, Turn};
+use saltus_bounce::flight::{Apex, Impact, LinearDragFlight, QuadraticDragFlight, VacuumFlight, VerticalFlight};
+use saltus_bounce::{Floor, Mode, Phase, SmoothFlight, Turn};
 
 /// The drag on a vertical ball.
 #[derive(Clone, Copy, Debug)]
@@ -34,34 +33,48 @@ pub(super) struct Vertical {
     pub(super) velocity: f64,
 }
 
-pub(super) fn runner(vertical: Vertical, law: &Law) -> Result<Box<dyn Runner>, PlanError> {
-    match law.constant() {
-        Some(cor) => with::<Cor>(vertical, cor),
-        None => with::<Law>(vertical, *law),
+/// A flight without an apex edge, chosen as a plan is made: the engine is compiled once for all.
+struct Smooth(Box<dyn SmoothFlight + Send + Sync>);
+
+impl VerticalFlight for Smooth {
+    fn acceleration(&self, velocity: f64) -> f64 {
+        self.0.acceleration(velocity)
+    }
+    fn after(&self, s: f64, x: &Vector2<f64>) -> Vector2<f64> {
+        self.0.after(s, x)
+    }
+    fn apex(&self, velocity: f64) -> Option<Apex> {
+        self.0.apex(velocity)
+    }
+    fn fall(&self, depth: f64, speed: f64) -> Option<Impact> {
+        self.0.fall(depth, speed)
+    }
+    fn impact(&self, x: &Vector2<f64>) -> Option<Impact> {
+        self.0.impact(x)
     }
 }
 
-fn with<R>(vertical: Vertical, law: R) -> Result<Box<dyn Runner>, PlanError>
-where
-    R: Restitution + Copy + Send + Sync + 'static,
-{
+impl SmoothFlight for Smooth {
+    fn polynomial(&self, x: &Vector2<f64>) -> Option<Polynomial<Vector2<f64>>> {
+        self.0.polynomial(x)
+    }
+}
+
+type Ball<F> = saltus_bounce::Ball<F, Law>;
+
+pub(super) fn runner(vertical: Vertical, law: &Law) -> Result<Box<dyn Runner>, PlanError> {
     let Vertical { gravity, drag, floor: (owner, level), height, velocity } = vertical;
     let start = Vector2::new(height, velocity);
     let view = BallView { owner, level };
-    Ok(match drag {
-        Drag::None => {
-            let ball = Ball::of(VacuumFlight::new(gravity).map_err(failed)?, law);
-            BoundModel::boxed(ball, view, Mode::Flight, start)
-        }
-        Drag::Linear(rate) => {
-            let ball = Ball::of(LinearDragFlight::new(gravity, rate).map_err(failed)?, law);
-            BoundModel::boxed(ball, view, Mode::Flight, start)
-        }
+    let flight: Box<dyn SmoothFlight + Send + Sync> = match drag {
+        Drag::None => Box::new(VacuumFlight::new(gravity).map_err(failed)?),
+        Drag::Linear(rate) => Box::new(LinearDragFlight::new(gravity, rate).map_err(failed)?),
         Drag::Quadratic(k) => {
-            let ball = Ball::of(QuadraticDragFlight::new(gravity, k).map_err(failed)?, law);
-            BoundModel::boxed(ball, view, Phase::of(&start), start)
+            let ball = Ball::of(QuadraticDragFlight::new(gravity, k).map_err(failed)?, *law);
+            return Ok(BoundModel::boxed(ball, view, Phase::of(&start), start));
         }
-    })
+    };
+    Ok(BoundModel::boxed(Ball::of(Smooth(flight), *law), view, Mode::Flight, start))
 }
 
 /// Reads a vertical ball over a floor at a height.
@@ -86,15 +99,7 @@ impl BallView {
     }
 }
 
-/// A flight without an apex edge that this crate plans: all smooth ones there are, and no other.
-trait Smooth: SmoothFlight {}
-impl Smooth for VacuumFlight {}
-impl Smooth for LinearDragFlight {}
-
-impl<F: Smooth, R: Restitution> SceneView<Ball<F, R>> for BallView
-where
-    Ball<F, R>: Automaton<Mode = Mode, Edge = Floor, State = Vector2<f64>>,
-{
+impl SceneView<Ball<Smooth>> for BallView {
     type Stepper = super::method::NoStepper;
 
     fn linear(&self, x: &Vector2<f64>, _: usize) -> Moment {
@@ -115,13 +120,13 @@ where
     fn rests(&self, mode: Mode, _: &Vector2<f64>) -> bool {
         mode == Mode::Rest
     }
-    fn scene_event(&self, _: &Ball<F, R>, _: &JumpOf<Ball<F, R>>, _: Floor) -> SceneEvent {
+    fn scene_event(&self, _: &Ball<Smooth>, _: &JumpOf<Ball<Smooth>>, _: Floor) -> SceneEvent {
         self.floor()
     }
-    fn modes(&self, _: &Ball<F, R>) -> Vec<Mode> {
+    fn modes(&self, _: &Ball<Smooth>) -> Vec<Mode> {
         vec![Mode::Flight, Mode::Rest]
     }
-    fn edge(&self, _: &Ball<F, R>, _: Mode, _: Floor) -> String {
+    fn edge(&self, _: &Ball<Smooth>, _: Mode, _: Floor) -> String {
         "floor".to_owned()
     }
     fn why(&self, mode: Mode, advance: Advance) -> &'static str {
@@ -133,7 +138,7 @@ where
     }
 }
 
-impl<R: Restitution> SceneView<Ball<QuadraticDragFlight, R>> for BallView {
+impl SceneView<Ball<QuadraticDragFlight>> for BallView {
     type Stepper = super::method::NoStepper;
 
     fn linear(&self, x: &Vector2<f64>, _: usize) -> Moment {
@@ -160,8 +165,8 @@ impl<R: Restitution> SceneView<Ball<QuadraticDragFlight, R>> for BallView {
     }
     fn scene_event(
         &self,
-        _: &Ball<QuadraticDragFlight, R>,
-        _: &JumpOf<Ball<QuadraticDragFlight, R>>,
+        _: &Ball<QuadraticDragFlight>,
+        _: &JumpOf<Ball<QuadraticDragFlight>>,
         turn: Turn,
     ) -> SceneEvent {
         match turn {
@@ -169,10 +174,10 @@ impl<R: Restitution> SceneView<Ball<QuadraticDragFlight, R>> for BallView {
             Turn::Apex => SceneEvent { balls: [Some(0), None], ..SceneEvent::of("apex") },
         }
     }
-    fn modes(&self, _: &Ball<QuadraticDragFlight, R>) -> Vec<Phase> {
+    fn modes(&self, _: &Ball<QuadraticDragFlight>) -> Vec<Phase> {
         vec![Phase::Rising, Phase::Falling, Phase::Rest]
     }
-    fn edge(&self, _: &Ball<QuadraticDragFlight, R>, _: Phase, turn: Turn) -> String {
+    fn edge(&self, _: &Ball<QuadraticDragFlight>, _: Phase, turn: Turn) -> String {
         match turn {
             Turn::Apex => "apex: the velocity falls through zero".to_owned(),
             Turn::Floor => "floor".to_owned(),

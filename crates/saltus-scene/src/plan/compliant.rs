@@ -9,9 +9,8 @@ use super::runner::{BoundModel, Runner};
 use super::view::{SceneEvent, SceneView};
 use super::{PlanError, failed};
 use crate::Contact;
-use saltus_bounce::Compliant;
 use saltus_bounce::compliant::{Moment as Edge, Stage};
-use saltus_bounce::contact::ContactLaw;
+use saltus_bounce::contact::{Collision, ContactLaw, Hertz, HuntCrossley, KelvinVoigt};
 
 /// The parameters of the model, in SI units.
 #[derive(Clone, Copy, Debug)]
@@ -25,20 +24,61 @@ pub(super) struct Pressed {
     pub(super) velocity: f64,
 }
 
-/// The runner, and an absolute tolerance far below the deformation where contacts are stepped.
-pub(super) fn runner(pressed: Pressed, contact: Contact) -> Result<(Box<dyn Runner>, Option<f64>), PlanError> {
-    match contact {
-        Contact::KelvinVoigt(law) => with(pressed, law),
-        Contact::Hertz(law) => with(pressed, law),
-        Contact::HuntCrossley(law) => with(pressed, law),
-        Contact::Rigid => Err(PlanError::new("[contact]", "a rigid contact takes no time: give a restitution")),
+/// A law that is chosen as a plan is made: the engine is compiled once for all.
+#[derive(Clone, Copy, Debug)]
+enum Chosen {
+    KelvinVoigt(KelvinVoigt),
+    Hertz(Hertz),
+    HuntCrossley(HuntCrossley),
+}
+
+/// Runs `$do` with the law.
+macro_rules! of_law {
+    ($self:ident, $law:ident, $do:expr) => {
+        match $self {
+            Self::KelvinVoigt($law) => $do,
+            Self::Hertz($law) => $do,
+            Self::HuntCrossley($law) => $do,
+        }
+    };
+}
+
+impl ContactLaw for Chosen {
+    #[inline]
+    fn force(&self, deformation: f64, rate: f64) -> f64 {
+        of_law!(self, law, law.force(deformation, rate))
+    }
+    fn stiffness(&self, deformation: f64, rate: f64) -> f64 {
+        of_law!(self, law, law.stiffness(deformation, rate))
+    }
+    fn damping(&self, deformation: f64, rate: f64) -> f64 {
+        of_law!(self, law, law.damping(deformation, rate))
+    }
+    #[inline]
+    fn margin(&self, deformation: f64, rate: f64) -> f64 {
+        of_law!(self, law, law.margin(deformation, rate))
+    }
+    #[inline]
+    fn linear(&self) -> Option<KelvinVoigt> {
+        of_law!(self, law, law.linear())
+    }
+    fn collision(&self, mass: f64, speed: f64) -> Option<Collision> {
+        of_law!(self, law, law.collision(mass, speed))
     }
 }
 
-fn with<L>(pressed: Pressed, law: L) -> Result<(Box<dyn Runner>, Option<f64>), PlanError>
-where
-    L: ContactLaw + Send + Sync + 'static,
-{
+type Compliant = saltus_bounce::Compliant<Chosen>;
+
+/// The runner, and an absolute tolerance far below the deformation where contacts are stepped.
+pub(super) fn runner(pressed: Pressed, contact: Contact) -> Result<(Box<dyn Runner>, Option<f64>), PlanError> {
+    let law = match contact {
+        Contact::KelvinVoigt(law) => Chosen::KelvinVoigt(law),
+        Contact::Hertz(law) => Chosen::Hertz(law),
+        Contact::HuntCrossley(law) => Chosen::HuntCrossley(law),
+        Contact::Rigid => {
+            return Err(PlanError::new("[contact]", "a rigid contact takes no time: give a restitution"));
+        }
+    };
     let Pressed { mass, gravity, floor: (owner, level), height, velocity } = pressed;
     let speed = (velocity * velocity + 2.0 * gravity * height.max(0.0)).sqrt();
     let absolute = match (law.linear(), law.collision(mass, speed)) {
@@ -55,7 +95,7 @@ struct CompliantView {
     level: f64,
 }
 
-impl<L: ContactLaw + Send + Sync + 'static> SceneView<Compliant<L>> for CompliantView {
+impl SceneView<Compliant> for CompliantView {
     type Stepper = saltus::Auto;
 
     fn linear(&self, x: &Vector2<f64>, _: usize) -> Moment {
@@ -80,7 +120,7 @@ impl<L: ContactLaw + Send + Sync + 'static> SceneView<Compliant<L>> for Complian
     fn rests(&self, _: Stage, _: &Vector2<f64>) -> bool {
         false // it swings about its static deformation, ever less
     }
-    fn scene_event(&self, _: &Compliant<L>, _: &JumpOf<Compliant<L>>, edge: Edge) -> SceneEvent {
+    fn scene_event(&self, _: &Compliant, _: &JumpOf<Compliant>, edge: Edge) -> SceneEvent {
         let name = match edge {
             Edge::FirstContact => "first contact",
             Edge::GreatestDeformation => "greatest deformation",
@@ -90,10 +130,10 @@ impl<L: ContactLaw + Send + Sync + 'static> SceneView<Compliant<L>> for Complian
         };
         SceneEvent { balls: [Some(0), None], ..SceneEvent::of(name) }
     }
-    fn modes(&self, _: &Compliant<L>) -> Vec<Stage> {
+    fn modes(&self, _: &Compliant) -> Vec<Stage> {
         vec![Stage::Fall, Stage::Compression, Stage::Restitution, Stage::Rise, Stage::Lying]
     }
-    fn edge(&self, _: &Compliant<L>, _: Stage, edge: Edge) -> String {
+    fn edge(&self, _: &Compliant, _: Stage, edge: Edge) -> String {
         match edge {
             Edge::FirstContact => "first contact: the height falls through the floor's",
             Edge::GreatestDeformation => "greatest deformation: its rate falls through zero",
@@ -114,7 +154,7 @@ impl<L: ContactLaw + Send + Sync + 'static> SceneView<Compliant<L>> for Complian
             }
         }
     }
-    fn contacts(&self, model: &Compliant<L>, run: &TrajectoryOf<Compliant<L>>) -> Option<Vec<Impact>> {
+    fn contacts(&self, model: &Compliant, run: &TrajectoryOf<Compliant>) -> Option<Vec<Impact>> {
         let impact = |contact: saltus_bounce::compliant::Contact| Impact {
             t: contact.touch,
             ball: 0,
@@ -123,12 +163,17 @@ impl<L: ContactLaw + Send + Sync + 'static> SceneView<Compliant<L>> for Complian
             rebound: contact.cor.map(|cor| cor * contact.speed),
             press: Some(Press { duration: contact.duration, force: contact.force, deformation: contact.deformation }),
         };
-        Some(model.contacts(run).into_iter().map(impact).collect())
+        let contacts = match *model.law() {
+            Chosen::KelvinVoigt(law) => model.by(law).contacts(run),
+            Chosen::Hertz(law) => model.by(law).contacts(run),
+            Chosen::HuntCrossley(law) => model.by(law).contacts(run),
+        };
+        Some(contacts.into_iter().map(impact).collect())
     }
     fn hysteresis(
         &self,
-        model: &Compliant<L>,
-        run: &TrajectoryOf<Compliant<L>>,
+        model: &Compliant,
+        run: &TrajectoryOf<Compliant>,
         contact: usize,
         count: usize,
     ) -> Vec<[f64; 2]> {
