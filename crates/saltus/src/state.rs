@@ -225,18 +225,22 @@ impl<'de, const CAP: usize> serde::Deserialize<'de> for Coords<CAP> {
 /// The coordinates as a slice.
 impl<const CAP: usize> std::ops::Deref for Coords<CAP> {
     type Target = [f64];
+    #[inline]
     fn deref(&self) -> &[f64] {
         &self.values[..self.len]
     }
 }
 
 impl<const CAP: usize> State for Coords<CAP> {
+    #[inline]
     fn len(&self) -> usize {
         self.len
     }
+    #[inline]
     fn get(&self, i: usize) -> f64 {
         self.values[i]
     }
+    #[inline]
     fn with(&self, mut f: impl FnMut(usize) -> f64) -> Self {
         let (mut values, mut i) = ([0.0; CAP], 0);
         while i < self.len {

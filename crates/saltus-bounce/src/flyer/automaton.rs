@@ -1,7 +1,7 @@
 //! The ball among walls as a hybrid automaton.
 
 use nalgebra::SVector;
-use saltus::{About, Automaton, Clocks, Edges, Entry, Jet, Limit, Refusal, Series, Solution, Ticking};
+use saltus::{About, Automaton, Clocks, Edges, Entry, Jet, Limit, Refusal, Series, Solution, State, Ticking};
 
 use super::contact::{VEERS, forwards, none};
 use super::{Event, Flyer, Grip, Moving, Stance, Turning};
@@ -40,8 +40,8 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
         Moving { position: x.velocity, velocity, spin }
     }
 
-    /// The flow of a flight over jets, of as many coordinates as the state has.
-    fn expand(&self, _: Stance<N>, series: &mut Series<'_, Moving<N, S>>) {
+    /// The flow of a flight over jets, for a state of as many coordinates as [`Moving`] has.
+    pub fn expand<X: State>(&self, _: Stance<N>, series: &mut Series<'_, X>) {
         match 2 * N + S::LEN {
             4 => series.flow::<4>(|_, x| self.jets(x)),
             5 => series.flow::<5>(|_, x| self.jets(x)),
@@ -76,6 +76,32 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
                 Stance::Slide { face, along } => (N <= 2 || none(&along)) && self.walls.straight(face),
                 Stance::Yield { face, .. } | Stance::Hold { face } => self.walls.straight(face),
             }
+    }
+
+    /// The events that may end a stance, in order; K may be more than N, where directions go on
+    /// with zeros.
+    #[inline]
+    pub fn events<const K: usize>(&self, stance: Stance<K>) -> Edges<'_, Event<K>> {
+        let cell = stance.cell();
+        let faces = (0..self.walls.faces(cell)).filter(|&index| !stance.touches(index));
+        let meets = faces.map(|index| Event::Meet(Face { cell, index }));
+        match stance {
+            Stance::Flight { .. } => meets.chain(self.turns().then_some(Event::Turn)).collect(),
+            Stance::Corner { .. } => meets.collect(),
+            Stance::Slide { face, along } => {
+                let leaves = (!self.steady(face)).then_some(Event::Leave(face));
+                let stops = (!none(&along)).then_some(Event::Stop { face, along });
+                meets.chain(leaves).chain(stops).collect()
+            }
+            Stance::Yield { face, push, since } => {
+                let ends = [Event::Leave(face), Event::Stop { face, along: push }, Event::Veer { face, push, since }];
+                meets.chain((!self.steady(face)).then_some(ends).into_iter().flatten()).collect()
+            }
+            Stance::Hold { face } => {
+                let moves = !self.steady(face);
+                meets.chain(moves.then_some(Event::Leave(face))).chain(moves.then_some(Event::Slip(face))).collect()
+            }
+        }
     }
 
     /// The events that may end a contact by itself, in a fixed order: leaving, the end of a slip,
@@ -133,26 +159,7 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
 
     #[inline]
     fn edges(&self, stance: Stance<N>) -> Edges<'_, Event<N>> {
-        let cell = stance.cell();
-        let faces = (0..self.walls.faces(cell)).filter(|&index| !stance.touches(index));
-        let meets = faces.map(|index| Event::Meet(Face { cell, index }));
-        match stance {
-            Stance::Flight { .. } => meets.chain(self.turns().then_some(Event::Turn)).collect(),
-            Stance::Corner { .. } => meets.collect(),
-            Stance::Slide { face, along } => {
-                let leaves = (!self.steady(face)).then_some(Event::Leave(face));
-                let stops = (!none(&along)).then_some(Event::Stop { face, along });
-                meets.chain(leaves).chain(stops).collect()
-            }
-            Stance::Yield { face, push, since } => {
-                let ends = [Event::Leave(face), Event::Stop { face, along: push }, Event::Veer { face, push, since }];
-                meets.chain((!self.steady(face)).then_some(ends).into_iter().flatten()).collect()
-            }
-            Stance::Hold { face } => {
-                let moves = !self.steady(face);
-                meets.chain(moves.then_some(Event::Leave(face))).chain(moves.then_some(Event::Slip(face))).collect()
-            }
-        }
+        self.events(stance)
     }
 
     #[inline]

@@ -1,9 +1,10 @@
 //! Several smooth balls in the plane or in space, in a box or over a level floor.
 
 use nalgebra::Vector3;
-use saltus::JumpOf;
+use saltus::{Automaton, Coords, Edges, JumpOf};
 
 use super::explain::Advance;
+use super::listed::{Kin, Listed};
 use super::record::{Moment, With};
 use super::runner::{BoundModel, Runner};
 use super::view::{Collision, SceneEvent, SceneView};
@@ -11,6 +12,23 @@ use super::{MOST_IN_SPACE, PlanError, failed};
 use crate::{Law, Scene, Shape};
 use saltus_bounce::Cloud;
 use saltus_bounce::cloud::{Swarm, Touch};
+
+/// A centre and a velocity of each ball.
+const COORDINATES: usize = 6 * MOST_IN_SPACE;
+
+/// Any number of balls.
+type Model = Listed<(), Touch, COORDINATES>;
+
+impl<const N: usize> Kin<(), Touch> for Cloud<3, N, Law> {
+    fn common((): ()) {}
+    fn own((): ()) {}
+    fn own_edge(touch: Touch) -> Touch {
+        touch
+    }
+    fn edges(&self, (): ()) -> Edges<'_, Touch> {
+        Automaton::edges(self, ())
+    }
+}
 
 /// The place of a wall that there is not: no ball gets there, and its square is a finite number.
 const NOWHERE: f64 = 1e150;
@@ -97,7 +115,7 @@ fn with<const N: usize>(scene: &Scene) -> Result<Box<dyn Runner>, PlanError> {
             .ok_or_else(|| PlanError::new("[[ball]]", "balls that meet in space need a size: give each a `radius`"))?;
     }
     let vector = |v: Vector3<f64>| [v.x, v.y, v.z];
-    let masses = std::array::from_fn(|i| balls[i].mass.unwrap_or(1.0));
+    let masses: [f64; N] = std::array::from_fn(|i| balls[i].mass.unwrap_or(1.0));
     let gravity = [0.0, 0.0, -scene.gravity.value()];
     let bounds = bounds(scene)?;
     let laws: Vec<Law> = (0..scene.floors.len())
@@ -113,29 +131,32 @@ fn with<const N: usize>(scene: &Scene) -> Result<Box<dyn Runner>, PlanError> {
     if let Some(law) = laws.first() {
         cloud = cloud.in_box(bounds.low, bounds.high, *law).map_err(failed)?;
     }
-    let centres = std::array::from_fn(|i| vector(balls[i].centre()));
-    let velocities = std::array::from_fn(|i| vector(balls[i].velocity));
-    let view = CloudView { radii, owners: bounds.owners };
-    Ok(BoundModel::boxed(cloud, view, (), Swarm { centres, velocities }))
+    let centres: [[f64; 3]; N] = std::array::from_fn(|i| vector(balls[i].centre()));
+    let velocities: [[f64; 3]; N] = std::array::from_fn(|i| vector(balls[i].velocity));
+    let view = CloudView { radii: radii.into(), owners: bounds.owners };
+    let (cloud, (), start) = Model::of(cloud, (), Swarm { centres, velocities })?;
+    Ok(BoundModel::boxed(cloud, view, (), start))
 }
 
-struct CloudView<const N: usize> {
-    radii: [f64; N],
+struct CloudView {
+    radii: Vec<f64>,
     owners: [[usize; 2]; 3],
 }
 
-impl<const N: usize> SceneView<Cloud<3, N, Law>> for CloudView<N> {
+/// The centre of a ball.
+fn centre(x: &[f64], ball: usize) -> Vector3<f64> {
+    Vector3::from_column_slice(&x[3 * ball..3 * ball + 3])
+}
+
+impl SceneView<Model> for CloudView {
     type Stepper = super::method::NoStepper;
 
     fn balls(&self) -> usize {
-        N
+        self.radii.len()
     }
-    fn linear(&self, x: &Swarm<3, N>, ball: usize) -> Moment {
-        Moment {
-            position: Vector3::from(x.centres[ball]),
-            velocity: Vector3::from(x.velocities[ball]),
-            spin: Vector3::zeros(),
-        }
+    fn linear(&self, x: &Coords<COORDINATES>, ball: usize) -> Moment {
+        let velocity = centre(&x[3 * self.radii.len()..], ball);
+        Moment { position: centre(x, ball), velocity, spin: Vector3::zeros() }
     }
     fn origin(&self, ball: usize) -> Moment {
         Moment { position: Vector3::new(0.0, 0.0, -self.radii[ball]), ..Moment::ZERO }
@@ -146,10 +167,10 @@ impl<const N: usize> SceneView<Cloud<3, N, Law>> for CloudView<N> {
     fn flies(&self, (): (), _: usize) -> bool {
         true
     }
-    fn rests(&self, (): (), _: &Swarm<3, N>) -> bool {
+    fn rests(&self, (): (), _: &Coords<COORDINATES>) -> bool {
         false
     }
-    fn scene_event(&self, _: &Cloud<3, N, Law>, jump: &JumpOf<Cloud<3, N, Law>>, touch: Touch) -> SceneEvent {
+    fn scene_event(&self, _: &Model, jump: &JumpOf<Model>, touch: Touch) -> SceneEvent {
         let wall = |ball: usize, axis: usize, side: f64, end: usize| {
             let mut normal = [0.0; 3];
             normal[axis] = side;
@@ -160,7 +181,7 @@ impl<const N: usize> SceneView<Cloud<3, N, Law>> for CloudView<N> {
         };
         match touch {
             Touch::Balls(i, j) => {
-                let apart = Vector3::from(jump.before.centres[j]) - Vector3::from(jump.before.centres[i]);
+                let apart = centre(&jump.before, j) - centre(&jump.before, i);
                 let collision = Collision { with: With::Ball(i), normal: apart / apart.norm(), speed: 0.0 };
                 SceneEvent { edge: "ball", balls: [Some(j), Some(i)], collision: Some(collision) }
             }
@@ -168,10 +189,10 @@ impl<const N: usize> SceneView<Cloud<3, N, Law>> for CloudView<N> {
             Touch::High { ball, axis } => wall(ball, axis, -1.0, 1),
         }
     }
-    fn modes(&self, _: &Cloud<3, N, Law>) -> Vec<()> {
+    fn modes(&self, _: &Model) -> Vec<()> {
         vec![()]
     }
-    fn edge(&self, _: &Cloud<3, N, Law>, (): (), touch: Touch) -> String {
+    fn edge(&self, _: &Model, (): (), touch: Touch) -> String {
         match touch {
             Touch::Balls(..) => "each pair of balls".to_owned(),
             Touch::Low { .. } | Touch::High { .. } => "each ball and each wall".to_owned(),

@@ -66,7 +66,7 @@ impl SceneView<Model> for FlockView {
         Moment { position: ball.position, velocity: ball.velocity, spin: ball.spin }
     }
     fn mode(&self, stances: Stances<MOST_IN_SPACE>, ball: usize) -> &'static str {
-        flyer::named(stances.of(ball))
+        flyer::named(stances.of(ball), 3)
     }
     fn flies(&self, stances: Stances<MOST_IN_SPACE>, ball: usize) -> bool {
         matches!(stances.of(ball), Stance::Flight { .. })
@@ -91,7 +91,7 @@ impl SceneView<Model> for FlockView {
             }
             Happens::To(ball, event) => {
                 let walls = model.balls()[ball].1.walls();
-                self.among.event_of(walls, ball, jump.t(), &jump.before.ball(ball).position, event)
+                self.among.event_of(walls, ball, jump.t(), jump.before.ball(ball).position.as_slice(), event)
             }
             Happens::Change => SceneEvent::of("schedule"),
             Happens::Nothing => SceneEvent::of("nothing"),

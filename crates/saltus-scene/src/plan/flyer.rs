@@ -1,12 +1,13 @@
 //! One ball in one to three coordinates, among whatever floors and walls a scene has.
 
 use nalgebra::{SVector, Vector3};
-use saltus::JumpOf;
+use saltus::{Automaton, Clocks, Coords, Edges, JumpOf, Series, State};
 
 use super::explain::Advance;
+use super::listed::{Kin, Listed};
 use super::record::{Moment, With};
 use super::runner::{BoundModel, Runner};
-use super::surroundings::{Surroundings, surroundings};
+use super::surroundings::{Around, Surroundings, spread, surroundings};
 use super::view::{Collision, SceneEvent, SceneView};
 use super::{PlanError, failed, label};
 use crate::{Ball, Law, Scene, Stepper};
@@ -90,16 +91,6 @@ fn position<const N: usize>(v: &Vector3<f64>) -> SVector<f64, N> {
     SVector::from_fn(|i, _| if i + 1 == N { v.z } else { v[i] })
 }
 
-/// N coordinates as (x, y, up).
-fn spread<const N: usize>(v: &SVector<f64, N>) -> Vector3<f64> {
-    let mut all = Vector3::zeros();
-    for i in 0..N - 1 {
-        all[i] = v[i];
-    }
-    all.z = v[N - 1];
-    all
-}
-
 fn smooth<const N: usize, E>(scene: &Scene, effects: E) -> Result<Box<dyn Runner>, PlanError>
 where
     E: Effect<N> + Send + Sync + 'static,
@@ -109,12 +100,12 @@ where
     let stance = Stance::Flight { cell: clear(&walls, &start.position)? };
     let view = FloorsView::new(scene, false);
     let flyer = Flyer::new(effects, walls, laws).map_err(crowded)?;
-    Ok(bound(scene, flyer, view, stance, start))
+    bound(scene, flyer, view, stance, start)
 }
 
 fn rough<const N: usize, S, E>(scene: &Scene, effects: E, spin: S) -> Result<Box<dyn Runner>, PlanError>
 where
-    S: Turning + Turned + Send + Sync + 'static,
+    S: Turning + Send + Sync + 'static,
     E: Effect<N, S> + Send + Sync + 'static,
     Rolls: Grip<N, S>,
 {
@@ -123,24 +114,26 @@ where
     let stance = Stance::Flight { cell: clear(&walls, &start.position)? };
     let view = FloorsView::new(scene, grips.each.iter().any(|rolls| rolls.friction.coefficient() > 0.0));
     let flyer = Flyer::gripped(effects, walls, laws, grips).map_err(crowded)?;
-    Ok(bound(scene, flyer, view, stance, start))
+    bound(scene, flyer, view, stance, start)
 }
 
 /// A ball with its start, by Taylor series where the scene asks for them.
 fn bound<const N: usize, S, E, G>(
     scene: &Scene,
     flyer: SceneFlyer<N, S, E, G>,
-    view: FloorsView,
+    floors: FloorsView,
     stance: Stance<N>,
     start: Moving<N, S>,
-) -> Box<dyn Runner>
+) -> Result<Box<dyn Runner>, PlanError>
 where
-    S: Turning + Turned + Send + Sync + 'static,
+    S: Turning + Send + Sync + 'static,
     E: Effect<N, S> + Send + Sync + 'static,
     G: Grip<N, S> + Send + Sync + 'static,
 {
     let flyer = if scene.run.stepper == Some(Stepper::Series) { flyer.by_series() } else { flyer };
-    BoundModel::boxed(flyer, view, stance, start)
+    let walls = Box::new(flyer.walls().clone());
+    let (flyer, stance, start) = Model::of(flyer, stance, start)?;
+    Ok(BoundModel::boxed(flyer, FlyerView { floors, walls }, stance, start))
 }
 
 /// The walls of a ball, with law and grip of each face. Friction turns a ball by its shape and
@@ -248,34 +241,11 @@ where
     }
 }
 
-/// A spin as a vector (x, y, up) by the right-hand rule.
-trait Turned {
-    fn vector(&self) -> Vector3<f64>;
-}
-
-impl Turned for () {
-    fn vector(&self) -> Vector3<f64> {
-        Vector3::zeros()
-    }
-}
-
-impl Turned for f64 {
-    fn vector(&self) -> Vector3<f64> {
-        Vector3::new(0.0, 0.0 - self, 0.0)
-    }
-}
-
-impl Turned for Vector3<f64> {
-    fn vector(&self) -> Vector3<f64> {
-        *self
-    }
-}
-
 /// The name of a stance. What only moves up and down has no way to slide: on a floor it rests.
-pub(super) const fn named<const N: usize>(stance: Stance<N>) -> &'static str {
+pub(super) const fn named(stance: Stance<3>, coordinates: usize) -> &'static str {
     match stance {
         Stance::Flight { .. } => "flight",
-        Stance::Slide { .. } if N == 1 => "rest",
+        Stance::Slide { .. } if coordinates == 1 => "rest",
         Stance::Slide { .. } | Stance::Yield { .. } => "slide",
         Stance::Hold { .. } => "hold",
         Stance::Corner { .. } => "corner",
@@ -303,28 +273,13 @@ impl FloorsView {
 
 impl FloorsView {
     /// The event of the scene that an event of `ball` is, taken at `p` at time `t`.
-    pub(super) fn event_of<const N: usize>(
-        &self,
-        walls: &Surroundings<N>,
-        ball: usize,
-        t: f64,
-        p: &SVector<f64, N>,
-        event: Event<N>,
-    ) -> SceneEvent {
+    pub(super) fn event_of(&self, walls: &dyn Around, ball: usize, t: f64, p: &[f64], event: Event<3>) -> SceneEvent {
         let one = |edge| SceneEvent { balls: [Some(ball), None], ..SceneEvent::of(edge) };
         match event {
             Event::Meet(face) => {
-                if walls.leads(face, t, p).is_some() {
-                    return one("passage");
-                }
-                let gradient = walls.gradient(face, t, p);
-                let length = gradient.norm();
+                let Some((normal, speed)) = walls.met(face, t, p) else { return one("passage") };
                 let owner = walls.owner(face);
-                let collision = Collision {
-                    with: With::Floor(owner),
-                    normal: spread(&(gradient / length)),
-                    speed: -walls.rate(face, t, p) / length,
-                };
+                let collision = Collision { with: With::Floor(owner), normal, speed };
                 SceneEvent { collision: Some(collision), ..one(self.kinds.get(owner).copied().unwrap_or("floor")) }
             }
             Event::Leave(_) => one("lift-off"),
@@ -337,7 +292,7 @@ impl FloorsView {
     }
 
     /// The name of an edge of a ball in a list.
-    pub(super) fn listed<const N: usize>(&self, walls: &Surroundings<N>, event: Event<N>) -> String {
+    pub(super) fn listed(&self, walls: &dyn Around, event: Event<3>) -> String {
         match event {
             Event::Meet(face) => self.labels.get(walls.owner(face)).cloned().unwrap_or_default(),
             Event::Leave(_) => "lift-off: the floor no longer presses".to_owned(),
@@ -350,7 +305,7 @@ impl FloorsView {
     }
 
     /// The reason why a ball is advanced as it is.
-    pub(super) const fn because<const N: usize>(stance: Stance<N>, advance: Advance) -> &'static str {
+    pub(super) const fn because(stance: Stance<3>, advance: Advance) -> &'static str {
         match (stance, advance) {
             (Stance::Flight { .. }, Advance::Exact) => "forces are the same everywhere and always: a parabola",
             (Stance::Flight { .. }, Advance::Series) => {
@@ -371,53 +326,122 @@ impl FloorsView {
 
 type SceneFlyer<const N: usize, S, E, G> = Flyer<N, S, E, Surroundings<N>, Laws, G>;
 
-impl<const N: usize, S, E, G> SceneView<SceneFlyer<N, S, E, G>> for FloorsView
+/// Place, velocity and spin in space.
+const COORDINATES: usize = 9;
+
+/// A ball in any number of coordinates, with or without spin. Directions have zeros in those that
+/// it has not.
+type Model = Listed<Stance<3>, Event<3>, COORDINATES>;
+
+/// The first N entries of a list that goes on with zeros.
+#[inline(always)]
+fn cut<const N: usize, const K: usize>(v: &SVector<f64, K>) -> SVector<f64, N> {
+    let mut of = [0.0; N];
+    of.iter_mut().zip(v.as_slice()).for_each(|(to, from)| *to = *from);
+    of.into()
+}
+
+#[inline(always)]
+fn stance<const N: usize, const K: usize>(stance: Stance<K>) -> Stance<N> {
+    match stance {
+        Stance::Flight { cell } => Stance::Flight { cell },
+        Stance::Slide { face, along } => Stance::Slide { face, along: cut(&along) },
+        Stance::Yield { face, push, since } => Stance::Yield { face, push: cut(&push), since },
+        Stance::Hold { face } => Stance::Hold { face },
+        Stance::Corner { cell, faces } => Stance::Corner { cell, faces },
+    }
+}
+
+#[inline(always)]
+fn event<const N: usize, const K: usize>(event: Event<K>) -> Event<N> {
+    match event {
+        Event::Meet(face) => Event::Meet(face),
+        Event::Leave(face) => Event::Leave(face),
+        Event::Stop { face, along } => Event::Stop { face, along: cut(&along) },
+        Event::Slip(face) => Event::Slip(face),
+        Event::Veer { face, push, since } => Event::Veer { face, push: cut(&push), since },
+        Event::Change => Event::Change,
+        Event::Turn => Event::Turn,
+    }
+}
+
+impl<const N: usize, S, E, G> Kin<Stance<3>, Event<3>> for SceneFlyer<N, S, E, G>
 where
-    S: Turning + Turned,
+    S: Turning,
     E: Effect<N, S>,
     G: Grip<N, S>,
 {
+    fn common(of: Stance<N>) -> Stance<3> {
+        stance(of)
+    }
+    fn own(of: Stance<3>) -> Stance<N> {
+        stance(of)
+    }
+    fn own_edge(of: Event<3>) -> Event<N> {
+        event(of)
+    }
+    fn edges(&self, of: Stance<3>) -> Edges<'_, Event<3>> {
+        self.events(of)
+    }
+    fn clocks(&self, of: Stance<3>) -> Clocks<'_, Event<3>> {
+        if Automaton::clocks(self, stance(of)).is_empty() { Clocks::none() } else { Clocks::asked(self, Event::Change) }
+    }
+    fn expand<X: State>(&self, of: Stance<3>, series: &mut Series<'_, X>) {
+        self.expand(stance(of), series);
+    }
+}
+
+struct FlyerView {
+    floors: FloorsView,
+    walls: Box<dyn Around>,
+}
+
+impl SceneView<Model> for FlyerView {
     type Stepper = saltus::Auto;
 
-    fn linear(&self, x: &Moving<N, S>, _: usize) -> Moment {
-        Moment { position: spread(&x.position), velocity: spread(&x.velocity), spin: x.spin.vector() }
+    fn linear(&self, x: &Coords<COORDINATES>, _: usize) -> Moment {
+        let (position, rest) = x.split_at(self.walls.coordinates());
+        let (velocity, spin) = rest.split_at(self.walls.coordinates());
+        let spin = match *spin {
+            // In the plane, by the right-hand rule.
+            [spin] => Vector3::new(0.0, 0.0 - spin, 0.0),
+            [x, y, z] => Vector3::new(x, y, z),
+            _ => Vector3::zeros(),
+        };
+        Moment { position: spread(position), velocity: spread(velocity), spin }
     }
-    fn mode(&self, stance: Stance<N>, _: usize) -> &'static str {
-        named(stance)
+    fn mode(&self, stance: Stance<3>, _: usize) -> &'static str {
+        named(stance, self.walls.coordinates())
     }
-    fn flies(&self, stance: Stance<N>, _: usize) -> bool {
+    fn flies(&self, stance: Stance<3>, _: usize) -> bool {
         matches!(stance, Stance::Flight { .. })
     }
-    fn rests(&self, stance: Stance<N>, x: &Moving<N, S>) -> bool {
-        let still = x.velocity.norm() == 0.0 && x.spin.vector().norm() == 0.0;
-        still && !matches!(stance, Stance::Flight { .. }) && !self.moves.contains(&true)
+    fn rests(&self, stance: Stance<3>, x: &Coords<COORDINATES>) -> bool {
+        let Moment { velocity, spin, .. } = self.linear(x, 0);
+        let still = velocity.norm() == 0.0 && spin.norm() == 0.0;
+        still && !matches!(stance, Stance::Flight { .. }) && !self.floors.acts().1
     }
-    fn scene_event(
-        &self,
-        model: &SceneFlyer<N, S, E, G>,
-        jump: &JumpOf<SceneFlyer<N, S, E, G>>,
-        event: Event<N>,
-    ) -> SceneEvent {
-        self.event_of(model.walls(), 0, jump.t(), &jump.before.position, event)
+    fn scene_event(&self, _: &Model, jump: &JumpOf<Model>, event: Event<3>) -> SceneEvent {
+        self.floors.event_of(&*self.walls, 0, jump.t(), &jump.before, event)
     }
-    fn modes(&self, model: &SceneFlyer<N, S, E, G>) -> Vec<Stance<N>> {
-        let walls = model.walls();
+    fn modes(&self, _: &Model) -> Vec<Stance<3>> {
         let mut modes = vec![Stance::FLIGHT];
+        let (rubs, _) = self.floors.acts();
         let mut slip = SVector::zeros();
-        slip[0] = if self.rubs { 1.0 } else { 0.0 };
-        for face in walls.all(0) {
+        slip[0] = if rubs { 1.0 } else { 0.0 };
+        for face in self.walls.first() {
             // Risers and passages are not lain on.
             modes.push(Stance::Slide { face, along: slip });
-            if self.rubs {
+            if rubs {
                 modes.push(Stance::Hold { face });
             }
         }
         modes
     }
-    fn edge(&self, model: &SceneFlyer<N, S, E, G>, _: Stance<N>, event: Event<N>) -> String {
-        self.listed(model.walls(), event)
+    fn edge(&self, _: &Model, _: Stance<3>, event: Event<3>) -> String {
+        self.floors.listed(&*self.walls, event)
     }
-    fn why(&self, stance: Stance<N>, advance: Advance) -> &'static str {
-        Self::because(stance, advance)
+    fn why(&self, stance: Stance<3>, advance: Advance) -> &'static str {
+        FloorsView::because(stance, advance)
     }
 }

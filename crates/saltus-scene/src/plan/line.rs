@@ -1,9 +1,10 @@
 //! Several balls on one line: stacked over a floor, or side by side without weight.
 
 use nalgebra::Vector3;
-use saltus::JumpOf;
+use saltus::{Automaton, Coords, Edges, JumpOf};
 
 use super::explain::Advance;
+use super::listed::{Kin, Listed};
 use super::record::{Moment, With};
 use super::runner::{BoundModel, Runner};
 use super::view::{Collision, SceneEvent, SceneView};
@@ -14,6 +15,27 @@ use saltus_bounce::line::{Contact, Lying, Row};
 
 /// The gap that rounding may leave between touching balls, relative to the numbers involved.
 const ROUNDING: f64 = 1e-12;
+
+/// A gap and a velocity of each ball.
+const COORDINATES: usize = 2 * MOST_BALLS;
+
+/// Any number of balls on a line.
+type Model = Listed<Lying, Contact, COORDINATES>;
+
+impl<const N: usize> Kin<Lying, Contact> for Line<N, Law> {
+    fn common(lying: Lying) -> Lying {
+        lying
+    }
+    fn own(lying: Lying) -> Lying {
+        lying
+    }
+    fn own_edge(contact: Contact) -> Contact {
+        contact
+    }
+    fn edges(&self, lying: Lying) -> Edges<'_, Contact> {
+        Automaton::edges(self, lying)
+    }
+}
 
 /// The line that all balls stay on, if they do: upwards in a vertical scene; any other only without
 /// weight and without anything to hit.
@@ -62,7 +84,7 @@ fn with<const N: usize>(
     let mut order: [usize; N] = std::array::from_fn(|i| i);
     order.sort_by(|&a, &b| balls[a].centre().dot(&u).total_cmp(&balls[b].centre().dot(&u)));
     let radius = |i: usize| balls[order[i]].radius.unwrap_or(0.0);
-    let masses = std::array::from_fn(|i| balls[order[i]].mass.unwrap_or(1.0));
+    let masses: [f64; N] = std::array::from_fn(|i| balls[order[i]].mass.unwrap_or(1.0));
     let base = floor.map_or(0.0, |(_, height)| height);
     let mut line =
         Line::new(masses, between).and_then(|line| line.with_gravity(scene.gravity.value())).map_err(failed)?;
@@ -75,7 +97,7 @@ fn with<const N: usize>(
     let lowest = |i: usize| {
         if u == Vector3::z() { balls[order[i]].lowest().z } else { balls[order[i]].centre().dot(&u) - radius(i) }
     };
-    let gaps = std::array::from_fn(|i| {
+    let gaps: [f64; N] = std::array::from_fn(|i| {
         if i == 0 {
             return lowest(0) - base;
         }
@@ -83,7 +105,7 @@ fn with<const N: usize>(
         let gap = (lowest(i) - lowest(i - 1)) - room;
         if gap.abs() <= ROUNDING * (lowest(i).abs() + room) { 0.0 } else { gap }
     });
-    let velocities = std::array::from_fn(|i| balls[order[i]].velocity.dot(&u));
+    let velocities: [f64; N] = std::array::from_fn(|i| balls[order[i]].velocity.dot(&u));
     // The lowest point of the ball in place i, if all gaps are closed.
     let mut origins = vec![Moment::ZERO; N];
     let mut places = [0; N];
@@ -96,29 +118,32 @@ fn with<const N: usize>(
         places[order[i]] = i;
         stacked += 2.0 * radius(i);
     }
-    let view = LineView { u, floor: floor.map(|(owner, _)| owner), order, places, origins };
-    Ok(BoundModel::boxed(line, view, Lying::NONE, Row { gaps, velocities }))
+    let view =
+        LineView { u, floor: floor.map(|(owner, _)| owner), order: order.into(), places: places.into(), origins };
+    let (line, lying, start) = Model::of(line, Lying::NONE, Row { gaps, velocities })?;
+    Ok(BoundModel::boxed(line, view, lying, start))
 }
 
 /// Reads balls on a line; `order` says which ball is in a place, `places` in which place a ball is.
-struct LineView<const N: usize> {
+struct LineView {
     u: Vector3<f64>,
     floor: Option<usize>,
-    order: [usize; N],
-    places: [usize; N],
+    order: Vec<usize>,
+    places: Vec<usize>,
     origins: Vec<Moment>,
 }
 
-impl<const N: usize> SceneView<Line<N, Law>> for LineView<N> {
+impl SceneView<Model> for LineView {
     type Stepper = super::method::NoStepper;
 
     fn balls(&self) -> usize {
-        N
+        self.order.len()
     }
-    fn linear(&self, x: &Row<N>, ball: usize) -> Moment {
+    fn linear(&self, x: &Coords<COORDINATES>, ball: usize) -> Moment {
         let place = self.places[ball];
-        let along: f64 = x.gaps[..=place].iter().sum();
-        Moment { position: self.u * along, velocity: self.u * x.velocities[place], spin: Vector3::zeros() }
+        let (gaps, velocities) = x.split_at(self.order.len());
+        let along: f64 = gaps[..=place].iter().sum();
+        Moment { position: self.u * along, velocity: self.u * velocities[place], spin: Vector3::zeros() }
     }
     fn origin(&self, ball: usize) -> Moment {
         self.origins[ball]
@@ -129,10 +154,10 @@ impl<const N: usize> SceneView<Line<N, Law>> for LineView<N> {
     fn flies(&self, lying: Lying, ball: usize) -> bool {
         self.places[ball] >= lying.count()
     }
-    fn rests(&self, lying: Lying, _: &Row<N>) -> bool {
-        lying.count() == N
+    fn rests(&self, lying: Lying, _: &Coords<COORDINATES>) -> bool {
+        lying.count() == self.order.len()
     }
-    fn scene_event(&self, _: &Line<N, Law>, _: &JumpOf<Line<N, Law>>, Contact(contact): Contact) -> SceneEvent {
+    fn scene_event(&self, _: &Model, _: &JumpOf<Model>, Contact(contact): Contact) -> SceneEvent {
         let Some(&ball) = self.order.get(contact) else { return SceneEvent::of("wall") };
         match contact.checked_sub(1) {
             None => {
@@ -146,13 +171,17 @@ impl<const N: usize> SceneView<Line<N, Law>> for LineView<N> {
             }
         }
     }
-    fn modes(&self, _: &Line<N, Law>) -> Vec<Lying> {
+    fn modes(&self, _: &Model) -> Vec<Lying> {
         vec![Lying::NONE]
     }
-    fn edge(&self, _: &Line<N, Law>, _: Lying, Contact(contact): Contact) -> String {
+    fn edge(&self, _: &Model, _: Lying, Contact(contact): Contact) -> String {
         match contact.checked_sub(1) {
             None => format!("ball {} meets the floor", self.order[0] + 1),
-            Some(below) => format!("ball {} meets ball {}", self.order[below] + 1, self.order[contact.min(N - 1)] + 1),
+            Some(below) => format!(
+                "ball {} meets ball {}",
+                self.order[below] + 1,
+                self.order[contact.min(self.order.len() - 1)] + 1
+            ),
         }
     }
     fn why(&self, _: Lying, _: Advance) -> &'static str {

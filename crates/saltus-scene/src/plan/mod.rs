@@ -12,6 +12,7 @@ mod failure;
 mod flock;
 mod flyer;
 mod line;
+mod listed;
 mod method;
 mod outcome;
 mod polyline;

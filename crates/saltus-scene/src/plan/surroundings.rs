@@ -1,7 +1,7 @@
 //! The floors, walls and boxes of a scene as the walls of one ball, whose position is that of its
 //! lowest point.
 
-use nalgebra::{SVector, Vector2};
+use nalgebra::{SVector, Vector2, Vector3};
 
 use super::PlanError;
 use super::curve::Curve;
@@ -107,6 +107,50 @@ fn lifted<const N: usize>(v: &Vector2<f64>) -> SVector<f64, N> {
     lifted[0] = v[0];
     lifted[N - 1] = v[1];
     lifted
+}
+
+/// The surroundings of a ball in any number of coordinates, in terms of (x, y, up).
+pub(super) trait Around: Send + Sync {
+    fn coordinates(&self) -> usize;
+    /// Every face of the first cell.
+    fn first(&self) -> Vec<Face>;
+    /// The floor of the scene that a face belongs to.
+    fn owner(&self, face: Face) -> usize;
+    /// The unit normal of a face where the ball is, and how fast the face moves along it; `None`
+    /// where it is the passage into the next cell.
+    fn met(&self, face: Face, t: f64, p: &[f64]) -> Option<(Vector3<f64>, f64)>;
+}
+
+impl<const N: usize> Around for Surroundings<N> {
+    fn coordinates(&self) -> usize {
+        N
+    }
+    fn first(&self) -> Vec<Face> {
+        self.all(0).collect()
+    }
+    fn owner(&self, face: Face) -> usize {
+        self.owner(face)
+    }
+    fn met(&self, face: Face, t: f64, p: &[f64]) -> Option<(Vector3<f64>, f64)> {
+        let p = SVector::from_column_slice(&p[..N]);
+        if self.leads(face, t, &p).is_some() {
+            return None;
+        }
+        let gradient = self.gradient(face, t, &p);
+        let length = gradient.norm();
+        Some((spread((gradient / length).as_slice()), -self.rate(face, t, &p) / length))
+    }
+}
+
+/// Coordinates, the last of which points up, as (x, y, up).
+#[inline]
+pub(super) fn spread(v: &[f64]) -> Vector3<f64> {
+    match *v {
+        [x, y, up] => Vector3::new(x, y, up),
+        [x, up] => Vector3::new(x, 0.0, up),
+        [up] => Vector3::new(0.0, 0.0, up),
+        _ => Vector3::zeros(),
+    }
 }
 
 impl<const N: usize> Surroundings<N> {
