@@ -110,7 +110,18 @@ impl<L: ContactLaw> Compliant<L> {
         &self.law
     }
 
-    /// The same ball by another law.
+    /// The same ball, of this mass and under this gravity, by another law: a model that chooses
+    /// its law as it runs hands its contacts to one that knows it.
+    ///
+    /// ```
+    /// use saltus_bounce::Compliant;
+    /// use saltus_bounce::contact::{HuntCrossley, KelvinVoigt};
+    ///
+    /// let ball = Compliant::new(0.05, 9.81, KelvinVoigt::new(2e4, 1.0)?)?;
+    /// let hard = HuntCrossley::new(1e6, 0.1)?;
+    /// assert_eq!(ball.by(hard), Compliant::new(0.05, 9.81, hard)?);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     #[must_use]
     pub const fn by<K: ContactLaw>(&self, law: K) -> Compliant<K> {
         Compliant { mass: self.mass, gravity: self.gravity, law }

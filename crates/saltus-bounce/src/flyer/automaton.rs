@@ -40,7 +40,9 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
         Moving { position: x.velocity, velocity, spin }
     }
 
-    /// The flow of a flight over jets, for a state of as many coordinates as [`Moving`] has.
+    /// The flow of a flight over jets, for a state of as many coordinates as [`Moving`] has, in its
+    /// order: places, velocities, spin. An automaton whose states are lists advances this ball by
+    /// the same series.
     pub fn expand<X: State>(&self, _: Stance<N>, series: &mut Series<'_, X>) {
         match 2 * N + S::LEN {
             4 => series.flow::<4>(|_, x| self.jets(x)),
@@ -78,8 +80,9 @@ impl<const N: usize, S: Turning, E: Effect<N, S>, W: Walls<N>, R: Restitution, G
             }
     }
 
-    /// The events that may end a stance, in order; K may be more than N, where directions go on
-    /// with zeros.
+    /// The events that may end a stance, in the order in which they are taken at one time: what
+    /// [`Automaton::edges`] gives, for a stance whose directions have K coordinates. K may be more
+    /// than N, where directions go on with zeros.
     #[inline]
     pub fn events<const K: usize>(&self, stance: Stance<K>) -> Edges<'_, Event<K>> {
         let cell = stance.cell();
