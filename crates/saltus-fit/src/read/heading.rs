@@ -2,6 +2,7 @@
 //! ball, and the words that are not understood.
 
 mod inside;
+mod kept;
 mod meaning;
 mod repeats;
 
@@ -149,7 +150,7 @@ pub(super) struct Heading {
 
 impl Heading {
     /// Takes a heading apart.
-    pub(super) fn parse(text: &str) -> Self {
+    fn apart(text: &str) -> Self {
         let (name, plain) = (text.trim(), narrow(&unaddressed(text)));
         let text = plain.trim();
         let mut heading = Self {
@@ -290,7 +291,6 @@ impl Heading {
             let letter = name.chars().next_back().filter(|c| matches!(c, 'x' | 'y' | 'X' | 'Y'))?;
             let stem = name.strip_suffix(letter)?;
             // What a colon ends is the name of the run.
-            // `cx` beside `cy`.
             let joined = stem.chars().all(char::is_lowercase) && letter.is_lowercase();
             let apart = (joined || stem.ends_with(['_', ' ', '.', '-', '/']))
                 && !stem.trim_end().ends_with(':')
