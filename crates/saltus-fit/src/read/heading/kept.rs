@@ -1,5 +1,5 @@
-//! Headings that were taken apart, for when the same text is met again: forms, titles and columns of
-//! a table each look at its lines.
+//! Headings that were taken apart, for when the same text is met again: forms, titles and columns
+//! of a table each look at its lines.
 
 use std::cell::RefCell;
 use std::collections::HashMap;
