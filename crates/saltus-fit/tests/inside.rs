@@ -26,6 +26,7 @@ fn files() -> Vec<PathBuf> {
                 "read/forms/values.rs",
                 "read/order.rs",
                 "read/vocabulary.rs",
+                "read/layout.rs",
                 "read/limits.rs",
                 "read/check.rs",
                 "read/grid/grouped.rs",

@@ -212,7 +212,7 @@ pub(super) fn layout(
     if !rowed && !any(|t| t.after.is_some()) {
         return Err(nothing(region, columns));
     }
-    if let Some(error) = of_samples(region, columns, rows) {
+    if let Some(error) = evenly_timed(region, columns, rows) {
         return Err(error);
     }
     if numbered {
@@ -345,7 +345,7 @@ fn beside(region: &Region<'_>, columns: &Columns, rows: &Rows) -> Option<TableEr
 }
 
 /// Times as far apart as one another are those of samples, and not of contacts.
-fn of_samples(region: &Region<'_>, columns: &Columns, rows: &Rows) -> Option<TableError> {
+fn evenly_timed(region: &Region<'_>, columns: &Columns, rows: &Rows) -> Option<TableError> {
     let (clock, column, _) = columns.values().find(|(_, _, v)| v.what == What::Time && v.at == At::Row)?;
     let times: Vec<f64> = rows.rows.iter().filter_map(|row| region.view.number(row.at, clock)).collect();
     let mut apart: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();

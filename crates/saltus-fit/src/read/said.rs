@@ -248,10 +248,7 @@ fn repeats(region: &Region<'_>, columns: &Columns) -> bool {
         _ => return false,
     };
     parts.sort_by(|a, b| a.0.cmp(&b.0));
-    let alike = |group: &[(String, f64)]| {
-        let usual = median(&mut group.iter().map(|(_, part)| *part).collect::<Vec<f64>>()).unwrap_or_default();
-        BOUNCES.contains(&usual) && group.iter().all(|(_, part)| (part / usual - 1.0).abs() < KEPT)
-    };
+    let alike = |group: &[(String, f64)]| keeps(group.iter().map(|(_, part)| *part).collect());
     parts.len() >= ALIKE && parts.chunk_by(|a, b| a.0 == b.0).all(alike)
 }
 
@@ -260,9 +257,14 @@ fn repeats_across(region: &Region<'_>, columns: &Columns, flights: &[(usize, &Va
     let number = |row: usize, n: usize| columns.written(region, row, n).map(|(number, _)| number);
     let of_row =
         |row: usize| flights.windows(2).filter_map(move |pair| Some(number(row, pair[1].0)? / number(row, pair[0].0)?));
-    let mut parts: Vec<f64> = region.rows.iter().flat_map(|&row| of_row(row)).collect();
+    let parts: Vec<f64> = region.rows.iter().flat_map(|&row| of_row(row)).collect();
+    parts.len() >= ALIKE && keeps(parts)
+}
+
+/// Whether all parts are nearly one that a ball keeps.
+fn keeps(mut parts: Vec<f64>) -> bool {
     let usual = median(&mut parts).unwrap_or_default();
-    parts.len() >= ALIKE && BOUNCES.contains(&usual) && parts.iter().all(|part| (part / usual - 1.0).abs() < KEPT)
+    BOUNCES.contains(&usual) && parts.iter().all(|part| (part / usual - 1.0).abs() < KEPT)
 }
 
 /// CORs of balls on floors: where all rows agree on one of these, the ball bounces.

@@ -174,26 +174,38 @@ pub(super) fn unstamped(text: &str) -> Option<String> {
 fn hits(text: &str) -> Option<String> {
     let first = text.lines().position(|line| timed(line).is_some())?;
     let event = counted_out(text.lines().nth(first).and_then(timed)?.1);
-    let exact = |time: &str| time.rsplit(':').next().is_some_and(|s| s.contains(['.', ',']));
-    let hit = |line| timed(line).filter(|(time, said)| exact(time) && counted_out(said) == event);
+    let hit = |line: &str| {
+        let (time, said) = timed(line)?;
+        (exact(time) && counted_out(said) == event).then(|| time.to_owned())
+    };
     let mut below = text.lines().skip(first).filter(|line| !line.trim().is_empty());
     let heading = format!("time of {event}");
     if below.clone().count() < 2 || !of_contacts(&Heading::parse(&heading)) || !below.all(|line| hit(line).is_some()) {
         return None;
     }
-    let spelt = |(n, line)| match hit(line) {
-        Some((time, _)) if n == first => format!("{heading}\r{time}"),
-        Some((time, _)) => time.to_owned(),
+    Some(below_name(text, (first, &heading), hit))
+}
+
+/// Whether a time is written to a part of a second.
+fn exact(time: &str) -> bool {
+    time.rsplit(':').next().is_some_and(|s| s.contains(['.', ',']))
+}
+
+/// A text whose lines from the first one on are rows below a heading, which shares the line of the
+/// first; lines that are none are remarks.
+fn below_name(text: &str, (first, heading): (usize, &str), row: impl Fn(&str) -> Option<String>) -> String {
+    let spelt = |(n, line): (usize, &str)| match row(line).filter(|_| n >= first) {
+        Some(row) if n == first => format!("{heading}\r{row}"),
+        Some(row) => row,
         None if line.trim().is_empty() => String::new(),
         None => format!("#{line}"),
     };
-    Some(text.lines().enumerate().map(spelt).collect::<Vec<_>>().join("\n") + "\n")
+    text.lines().enumerate().map(spelt).collect::<Vec<_>>().join("\n") + "\n"
 }
 
 /// What a device sends, one number of one name a line, `14:03:22.159 -> Distance: 26 cm`, as a
 /// table of that and the time; `None` where a line says something else.
 fn sent(text: &str) -> Option<String> {
-    let exact = |time: &str| time.rsplit(':').next().is_some_and(|s| s.contains(['.', ',']));
     let reading = |line: &'_ str| -> Option<(String, String)> {
         let stamp = stamped(line).filter(|stamp| !stamp.chat && exact(stamp.time))?;
         let (name, number) = stamp.said.split_once([':', '='])?;
@@ -208,13 +220,7 @@ fn sent(text: &str) -> Option<String> {
     if !text.lines().skip(first).all(alike) || text.lines().nth(first + 2).is_none() {
         return None;
     }
-    let spelt = |(n, line): (usize, &str)| match reading(line).filter(|_| n >= first) {
-        Some((_, row)) if n == first => format!("{heading}\r{row}"),
-        Some((_, row)) => row,
-        None if line.trim().is_empty() => String::new(),
-        None => format!("#{line}"),
-    };
-    Some(text.lines().enumerate().map(spelt).collect::<Vec<_>>().join("\n") + "\n")
+    Some(below_name(text, (first, &heading), |line| reading(line).map(|(_, row)| row)))
 }
 
 /// Days and times by themselves, to a part of a second, below a line that names impacts: `# hits`.

@@ -25,7 +25,7 @@ pub(crate) fn judge(
     series: &Series,
     (gravity, pixels): (Sourced, bool),
 ) -> (Vec<Estimate>, Vec<ModelChoice>) {
-    judgement.findings.extend(series.repairs.iter().chain(&series.again).cloned());
+    judgement.findings.extend(series.repairs.iter().cloned());
     if let Some(down) = series.falls_upwards {
         judgement.doubt(FindingKind::FallsUpwards { down });
     }

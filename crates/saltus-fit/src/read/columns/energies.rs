@@ -21,10 +21,9 @@ impl Columns {
         let stands = |role: Role| !matches!(role, Role::Error | Role::Lost);
         let read = |c: &super::Column| c.heading.unknown.is_empty() && c.value().is_some_and(|v| stands(v.role));
         let released = |c: &super::Column| c.value().is_some_and(|v| v.what == What::Height && v.at == At::Release);
-        let lost = super::Column::of_hundredths;
         let named = |n: &usize| self.columns[*n].kind == Kind::Aside && self.columns[*n].heading.energy.is_some();
         let (parts, joules): (Vec<usize>, Vec<usize>) =
-            (0..self.columns.len()).filter(named).partition(|&n| lost(&self.columns[n]));
+            (0..self.columns.len()).filter(named).partition(|&n| self.columns[n].of_hundredths());
         // Of two energies of one row one is after the bounce, and the other before it: `PE at the
         // top`, `KE at the floor`.
         if let [one, other] = joules.as_slice()

@@ -180,21 +180,24 @@ impl Columns {
         let read = |v: &Value| v.what == What::Time && v.at == At::Row && v.role == Role::Reading && v.trial.is_empty();
         let times: Vec<usize> = self.values().filter(|(_, _, v)| read(v)).map(|(n, _, _)| n).collect();
         let &[one, other] = times.as_slice() else { return };
-        let seconds = |n: usize| -> Option<Vec<f64>> {
-            let unit = self.columns[n].unit?;
-            region.rows.iter().map(|&row| Some(unit.si(region.view.number(row, n)?))).collect()
-        };
-        let Some((one_s, other_s)) = seconds(one).zip(seconds(other)) else { return };
-        let within = |brief: &[f64], clock: &[f64]| {
-            clock.len() > 2 && clock.windows(2).zip(brief).all(|(pair, brief)| *brief < SHORT * (pair[1] - pair[0]))
-        };
-        let brief = match (within(&one_s, &other_s), within(&other_s, &one_s)) {
+        let brief = match (self.within(region, one, other), self.within(region, other, one)) {
             (true, false) => one,
             (false, true) => other,
             _ => return,
         };
         self.columns[brief].heading.unknown.clear();
         self.leave(brief, Why::Other);
+    }
+
+    /// Whether the times of a column are all far shorter than what lies between the one of a clock
+    /// beside it and the next.
+    fn within(&self, region: &Region<'_>, brief: usize, clock: usize) -> bool {
+        let seconds = |row: usize, n: usize| Some(self.columns[n].unit?.si(region.view.number(row, n)?));
+        let short = |pair: &[usize]| {
+            let between = seconds(pair[1], clock)? - seconds(pair[0], clock)?;
+            Some(seconds(pair[0], brief)? < SHORT * between)
+        };
+        region.rows.len() > 2 && region.rows.windows(2).all(|pair| short(pair) == Some(true))
     }
 
     /// `range_mm` beside a clock and no other length: the distance that a sensor measures, and no
@@ -220,13 +223,7 @@ impl Columns {
         };
         let Some((time, flight)) = of(What::Time).zip(of(What::Interval)) else { return };
         // What is shorter than all that lies between is how long each contact lasts.
-        let seconds = |row: usize, n: usize| Some(self.columns[n].unit?.si(region.view.number(row, n)?));
-        let brief = |pair: &[usize]| {
-            let between = seconds(pair[1], time)? - seconds(pair[0], time)?;
-            Some(seconds(pair[0], flight)? < SHORT * between)
-        };
-        let lasts = self.columns[flight].heading.has(Atom::Impact) && region.rows.len() > 2;
-        if lasts && region.rows.windows(2).all(|pair| brief(pair) == Some(true)) {
+        if self.columns[flight].heading.has(Atom::Impact) && self.within(region, flight, time) {
             self.columns[flight].heading.unknown.clear();
             self.leave(flight, Why::Other);
             return;

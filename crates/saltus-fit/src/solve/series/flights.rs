@@ -13,6 +13,9 @@ const PROMINENT: f64 = 0.01;
 const ABOVE_NOISE: f64 = 8.0;
 /// A minimum further above the floor than this part of the range is no contact with it.
 const FLOOR: f64 = 0.05;
+/// A sample is near the top within this part of a flight, or so many times the noise.
+const TOP: f64 = 0.05;
+const STILL: f64 = 4.0;
 /// A ball that stays near the top of its last flight for so many times as long as a flight does is
 /// held.
 const HELD: f64 = 1.5;
@@ -160,6 +163,12 @@ pub(super) fn cut(times: &[f64], heights: &[f64]) -> Result<Flights, NoFlights> 
     })
 }
 
+/// How far below the top of a flight that rises, or falls, by so much its samples are near it: a
+/// twentieth of that, or what noise makes of a ball at rest.
+fn near_top(rise: f64, noise: f64) -> f64 {
+    (TOP * rise).max(STILL * noise)
+}
+
 /// The first sample of the fall: after the highest, and well below it if the ball was held there.
 fn begin(times: &[f64], heights: &[f64], contact: usize, noise: f64) -> usize {
     let mut top = 0;
@@ -169,11 +178,11 @@ fn begin(times: &[f64], heights: &[f64], contact: usize, noise: f64) -> usize {
         }
     }
     let fall = heights[top] - heights[contact];
-    let below = |part: f64| heights[top] - (part * fall).max(4.0 * noise);
-    let falling = (0..contact).rev().find(|&i| heights[i] >= below(0.05)).unwrap_or(top);
+    let high = heights[top] - near_top(fall, noise);
+    let falling = (0..contact).rev().find(|&i| heights[i] >= high).unwrap_or(top);
     // From rest the first twentieth of a fall takes 0.29 of the time of the rest; longer means
     // held.
-    let near = (0..=top).find(|&i| heights[i] >= below(0.05)).unwrap_or(top);
+    let near = (0..=top).find(|&i| heights[i] >= high).unwrap_or(top);
     let held = times[falling] - times[near] > 0.4 * (times[contact] - times[falling]);
     if held { falling + 1 } else { top }
 }
@@ -199,7 +208,7 @@ fn end(
     if rise < slowest * (times[top] - times[contact]).powi(2) {
         return contact;
     }
-    let part = 0.05f64.max(4.0 * noise / rise);
+    let part = near_top(rise, noise) / rise;
     let near = |i: &usize| heights[*i] >= heights[top] - part * rise;
     let came = (contact..top).find(near).unwrap_or(top);
     let left = (top..ended).find(|i| !near(i)).unwrap_or(ended);

@@ -37,10 +37,9 @@ pub(crate) struct Series {
     pub(crate) otherwise: Option<(Pooled, Vec<Track>, f64)>,
     /// Trials whose series show no bounce that can be fitted, and why.
     pub(crate) refused: Vec<Finding>,
-    /// What was done to put the samples in order.
+    /// What was done to put the samples in order, and where a ball is dropped again after the last
+    /// flight that is fitted.
     pub(crate) repairs: Vec<Finding>,
-    /// Where a ball is dropped again after the last flight that is fitted.
-    pub(crate) again: Vec<Finding>,
     /// What was stated about the way that heights count, where the ball then falls upwards.
     pub(crate) falls_upwards: Option<bool>,
 }
@@ -59,7 +58,7 @@ pub(crate) fn fit(table: &Table, repair: bool, drag: Option<f64>) -> Result<Opti
             Ok(found) => {
                 let again = found.dropped_again(&samples, (repair, drag));
                 let doubt = |time_s| Finding::doubt(FindingKind::DroppedAgain { time_s }).at(place.clone());
-                series.again.extend(again.map(doubt));
+                series.repairs.extend(again.map(doubt));
                 Some(found)
             }
             Err(track::Refusal::Flights(why)) => {

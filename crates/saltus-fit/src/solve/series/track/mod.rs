@@ -108,8 +108,12 @@ impl Recording {
         if !later.heights.iter().any(|h| *h > apex) {
             return None;
         }
-        let other = Self::of(self.instant.trial, &later, (repair, drag)).ok()?.instant;
-        in_metres(other.gravity(), self.instant.gravity()).then_some(other.scale.origin.0)
+        let mut other = Candidates::cut(self.instant.trial, &later, repair).ok()?;
+        if !in_metres(other.gravity(), self.instant.gravity()) {
+            return None;
+        }
+        other.hold(drag);
+        Some(other.fitted(repair).ok()?.scale.origin.0)
     }
 
     /// By how much the BIC of contacts that take time is better; `None` where that does not show.
