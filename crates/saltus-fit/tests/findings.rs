@@ -186,6 +186,7 @@ fn every_remark_comes_back() {
         Note::Apart { column: column() },
         Note::Dropped { height_m: 1.5 },
         Note::Floor { reading: "812".to_owned(), down: true },
+        Note::Aloft { contact_s: 0.0162 },
         Note::FallingTimes,
         Note::RisingTimes { column: column() },
         Note::Thousands { cell: "1.250".to_owned() },
@@ -238,5 +239,5 @@ fn every_remark_comes_back() {
         },
         Warning::MoreStrays { heights: 7 },
     ];
-    assert_eq!((back(notes), back(repairs), back(warnings)), (43, 6, 7));
+    assert_eq!((back(notes), back(repairs), back(warnings)), (44, 6, 7));
 }

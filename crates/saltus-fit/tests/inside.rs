@@ -26,6 +26,7 @@ fn files() -> Vec<PathBuf> {
                 "read/forms/values.rs",
                 "read/order.rs",
                 "read/vocabulary.rs",
+                "read/lasting.rs",
                 "read/layout.rs",
                 "read/limits.rs",
                 "read/check.rs",

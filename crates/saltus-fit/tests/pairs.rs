@@ -7,7 +7,7 @@
 mod typed;
 
 use proptest::prelude::*;
-use saltus_fit::{Fit, ReadOptions, Report, Table};
+use saltus_fit::{Fit, Note, ReadOptions, Report, Table};
 use typed::{fit, read, trusted};
 
 fn near(found: f64, e: f64, by: f64) -> bool {
@@ -61,7 +61,7 @@ proptest! {
         prop_assert!(report.verdict() == saltus_fit::Verdict::Trusted, "{}", report);
     }
 
-    /// Contacts have a begin and an end: their times are those of the begins.
+    /// Contacts have a begin and an end: flights are from the end of each to the begin of the next.
     #[test]
     fn contacts_begin_and_end(
         e in 0.7..0.9_f64,
@@ -74,7 +74,7 @@ proptest! {
         ]),
     ) {
         let report = fit(&on_and_off(names, &contacts(e, lasts, 900.0)));
-        prop_assert!(near(report.cor().unwrap().value, e, 0.02), "{}", report);
+        prop_assert!(near(report.cor().unwrap().value, e, 5e-4), "{}", report);
     }
 
     /// From where a ball was dropped, and up to where it came back.
@@ -166,6 +166,44 @@ fn contacts_are_shorter_than_flights() {
     let taken = |lasts: f64| read(&on_and_off(("t_on_ms", "t_off_ms"), &contacts(0.9, lasts, 200.0))).is_ok();
     assert!(taken(14.0) && taken(30.0));
     assert!(!taken(300.0) && !taken(150.0));
+}
+
+/// Contacts of a ball on the floor last alike, and for tens of milliseconds at most. What gets
+/// longer as the ball gets slower is a beam that it blocks, what gets shorter rings, what is one
+/// and the same was set, and what a sound names says nothing of the floor: those begin, and that
+/// is all.
+#[test]
+fn contacts_on_the_floor_last_alike() {
+    let taken = |names: (&str, &str), lasts: &dyn Fn(i32) -> f64| {
+        let mut at = 1000.0;
+        let row = |n: i32| {
+            let begin = at;
+            at += lasts(n) + 600.0 * 0.8f64.powi(n);
+            format!("{},{begin:.4},{:.4}\n", n + 1, begin + lasts(n))
+        };
+        let rows: String = (0..7).map(row).collect();
+        let table = read(&format!("impact,{},{}\n{rows}", names.0, names.1)).unwrap();
+        let aloft = table.notes().iter().any(|note| matches!(note.kind, Note::Aloft { .. }));
+        let cor = Fit::new().run(&table).unwrap().cor().unwrap().value;
+        assert!(!aloft || near(cor, 0.8, 5e-4), "{cor}");
+        aloft
+    };
+    let plate = ("t_on_ms", "t_off_ms");
+    let wavers = |n: i32| if n % 2 == 0 { 1.0 } else { 1.06 };
+    for lasts in [2.0, 10.0, 30.0] {
+        assert!(taken(plate, &|n| lasts * wavers(n)), "{lasts}");
+        // Of a solid ball by the fifth root of the speed, and a little shorter by a threshold.
+        assert!(taken(plate, &|n| lasts * 0.8f64.powf(-0.2 * f64::from(n))), "{lasts}");
+        assert!(taken(plate, &|n| lasts * (1.0 - 0.02 * f64::from(n))), "{lasts}");
+    }
+    assert!(!taken(plate, &|n| 60.0 * wavers(n)));
+    assert!(!taken(plate, &|n| 10.0 * [1.0, 1.5, 0.7, 1.4, 0.6, 1.3, 0.8][n as usize]));
+    assert!(!taken(plate, &|n| 10.0 * 0.8f64.powi(-n)));
+    assert!(!taken(plate, &|n| 10.0 * 0.9f64.powi(n)));
+    assert!(!taken(plate, &|n| 10.0 + 0.0025 * (wavers(n) - 1.0) / 0.06) && !taken(plate, &|_| 10.0));
+    assert!(taken(plate, &|n| 10.0 + 0.05 * (wavers(n) - 1.0) / 0.06));
+    assert!(!taken(("sound on (ms)", "sound off (ms)"), &|n| 10.0 * wavers(n)));
+    assert!(!taken(("blocked (ms)", "unblocked (ms)"), &|n| 10.0 * wavers(n)));
 }
 
 /// Times that nothing blocks, words that name no gate, and times of contacts that overlap are

@@ -253,6 +253,11 @@ pub enum Note {
         /// Whether the scale counts downwards.
         down: bool,
     },
+    /// Contacts begin and end: flights are from the end of each to the begin of the next.
+    Aloft {
+        /// How long a contact lasts, the median, s.
+        contact_s: f64,
+    },
     /// Times fall from bounce to bounce: they are times between contacts.
     FallingTimes,
     /// Times between contacts rise from row to row: they are those of a running clock.
@@ -481,7 +486,6 @@ mod tests {
 
     #[test]
     fn as_many_are_named_as_one_glance_counts() {
-        let lines = Lines::of(&[2, 3, 5, 7, 11, 13, 17]);
-        assert_eq!((lines.first, lines.count), (vec![2, 3, 5, 7, 11], 7));
+        assert_eq!(Lines::of(&[2, 3, 5, 7, 11, 13, 17]), Lines { first: vec![2, 3, 5, 7, 11], count: 7 });
     }
 }

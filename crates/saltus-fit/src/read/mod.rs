@@ -19,6 +19,7 @@ mod heading;
 mod heard;
 mod json;
 mod judged;
+mod lasting;
 mod layout;
 mod limits;
 mod named;

@@ -76,6 +76,14 @@ impl<'a> Region<'a> {
         self.rows.iter().filter_map(move |&row| self.view.number(row, column))
     }
 
+    /// Whether all numbers of a column are the same, there being several.
+    pub(super) fn constant(&self, column: usize) -> bool {
+        let mut numbers = self.numbers(column);
+        let first = numbers.next();
+        let mut rest = numbers.peekable();
+        rest.peek().is_some() && rest.all(|n| Some(n) == first)
+    }
+
     /// Whether the cells of a column count something: whole numbers from 0 or 1 on, none of them
     /// left out.
     pub(super) fn counts(&self, column: usize) -> bool {
@@ -116,8 +124,12 @@ impl<'a> Region<'a> {
 
     /// An error at a column in the line `line`.
     pub(super) fn line_error(&self, line: u64, column: usize, message: impl Into<String>) -> TableError {
-        let row = if self.view.across { line_across(self, line) } else { self.view.grid.row_of(line) };
-        self.view.error(row, column, message)
+        self.view.error(self.row_of(line), column, message)
+    }
+
+    /// The row of a reading in the line `line`.
+    pub(super) fn row_of(&self, line: u64) -> usize {
+        if self.view.across { line_across(self, line) } else { self.view.grid.row_of(line) }
     }
 }
 

@@ -30,7 +30,9 @@ impl Columns {
             let dimension = match &self.columns[index].kind {
                 Kind::Value(value) => value.what.dimension(),
                 Kind::Lost => Some(Dimension::Length),
-                Kind::Error(of) | Kind::High(of) => self.columns[*of].value().and_then(|v| v.what.dimension()),
+                Kind::Error(of) | Kind::High(of) | Kind::Ends(of) => {
+                    self.columns[*of].value().and_then(|v| v.what.dimension())
+                }
                 _ => None,
             };
             if let Some(dimension) = dimension {
@@ -57,7 +59,7 @@ impl Columns {
         let column = &self.columns[index];
         let name = shown(&column.heading.text);
         let of = match column.kind {
-            Kind::Error(of) | Kind::High(of) => Some(of),
+            Kind::Error(of) | Kind::High(of) | Kind::Ends(of) => Some(of),
             _ => None,
         };
         if let Some(unit) = column.unit {

@@ -11,6 +11,7 @@ use super::aside::{LeftAside, Part, Why};
 use super::columns::{Column, Columns, Kind};
 use super::grid::shown;
 use super::heading::{At, Role, What};
+use super::lasting;
 use super::layout::{Layout, Track, layout, tracks};
 use super::order::{in_order, renumbered, rise, summed};
 use super::region::Region;
@@ -389,6 +390,7 @@ impl Builder<'_> {
             let left = |line| LeftAside::new(Part::Cell, name.as_str(), Why::Unresolved).at(line);
             table.left_aside.extend(unresolved.into_iter().map(left));
         }
+        lasting::taken_off(region, columns, &mut table);
         percent(region, columns, &mut table)?;
         energies(columns, &mut table.trials);
         stray::warn(region, columns, &table.trials, &mut table.warnings);

@@ -2,7 +2,7 @@
 //! way down and up, when a contact begins and ends, from where and up to where a ball came.
 
 use super::{Column, Columns, Kind};
-use crate::read::aside::Why;
+use crate::read::aside::{LeftAside, Why};
 use crate::read::grid::shown;
 use crate::read::heading::{At, Role, Value, What};
 use crate::read::phrases::Phrase;
@@ -170,7 +170,17 @@ impl Columns {
         if ordered && contact < SHORT * flight {
             self.becomes(on, What::Time, At::Row);
             self.columns[off].heading.unknown.clear();
-            self.leave(off, Why::Elsewhere);
+            // What blocks a gate or makes a sound is not the floor all that time.
+            let named = |text: &str| names_gate(text) || names_sound(text);
+            let other = |text: &LeftAside| named(&text.name);
+            if region.aside.iter().any(other)
+                || named(region.view.grid.name)
+                || region.header.iter().any(|name| named(name))
+            {
+                self.leave(off, Why::Elsewhere);
+            } else {
+                self.columns[off].kind = Kind::Ends(on);
+            }
         }
     }
 
@@ -272,4 +282,9 @@ const SHORT: f64 = 0.5;
 /// Whether a text names a gate that a ball runs through.
 fn names_gate(text: &str) -> bool {
     pieces(text).iter().any(|word| Phrase::Gate.is(&folded(word)))
+}
+
+/// Whether a text names a sound.
+fn names_sound(text: &str) -> bool {
+    pieces(text).iter().any(|word| Phrase::Sound.is(&folded(word)))
 }

@@ -52,6 +52,8 @@ pub(super) enum Kind {
     Error(usize),
     /// The upper ends of ranges whose lower ends stand in another column.
     High(usize),
+    /// When what another column lists the begins of ends.
+    Ends(usize),
     /// How much lower the rebound is than the release.
     Lost,
     /// The part of its drop's height to which a rebound rises.
@@ -465,7 +467,7 @@ impl Columns {
                 continue;
             }
             // Of the places of a film one axis may lie still.
-            let (first, still) = (*before, |n: usize| value.position && constant(region, n));
+            let (first, still) = (*before, |n: usize| value.position && region.constant(n));
             if still(index) || still(first) {
                 if !still(index) {
                     seen.push((index, value.clone()));
@@ -489,12 +491,4 @@ impl Columns {
         }
         Ok(())
     }
-}
-
-/// Whether all numbers of a column are the same, there being several.
-fn constant(region: &Region<'_>, column: usize) -> bool {
-    let mut numbers = region.numbers(column);
-    let first = numbers.next();
-    let mut rest = numbers.peekable();
-    rest.peek().is_some() && rest.all(|n| Some(n) == first)
 }

@@ -1,7 +1,7 @@
 //! Columns that are what they are beside others: drops with their own rebounds, counts of rows,
 //! measured cells under the name of a key.
 
-use super::{Column, Columns, Kind, constant};
+use super::{Column, Columns, Kind};
 use crate::error::TableError;
 use crate::finding::Note;
 use crate::read::aside::Why;
@@ -210,7 +210,7 @@ impl Columns {
                 of == Some(names[*n].as_str()) && column.holds(What::Height) && column.heading.unknown.is_empty()
             };
             let one_unit = |n: &usize| self.columns[*n].heading.unit == self.columns[index].heading.unit;
-            let Some(of) = (0..names.len()).find(reading).filter(one_unit).filter(|_| constant(region, index)) else {
+            let Some(of) = (0..names.len()).find(reading).filter(one_unit).filter(|_| region.constant(index)) else {
                 continue;
             };
             let name = shown(&self.columns[index].heading.text);

@@ -61,6 +61,10 @@ impl Display for Note {
                 let way = if *down { "downwards" } else { "upwards" };
                 write!(f, "the scale reads {reading} at the floor and counts {way}")
             }
+            Self::Aloft { contact_s } => {
+                let lasts = 1000.0 * contact_s;
+                write!(f, "the ball is on the floor for {lasts:.1} ms at each contact: flights begin at its end")
+            }
             Self::FallingTimes => f.write_str("the times fall from bounce to bounce: taken as times between contacts"),
             Self::RisingTimes { column } => {
                 write!(f, "the times of '{column}' rise from row to row: taken as those of a running clock")
