@@ -179,6 +179,7 @@ fn every_remark_comes_back() {
         Note::Rate { rate: 240.0, line: None },
         Note::Still { tracks: columns() },
         Note::Heard { sounds: 48, contacts: 10, from: 0.0, to: 6.46 },
+        Note::Felt { column: column(), pulses: 12, contacts: 8 },
         Note::Overdriven { part: 0.02 },
         Note::Sheets { sheets: columns(), drops: true },
         Note::SheetsAside { sheets: columns() },
@@ -239,5 +240,5 @@ fn every_remark_comes_back() {
         },
         Warning::MoreStrays { heights: 7 },
     ];
-    assert_eq!((back(notes), back(repairs), back(warnings)), (44, 6, 7));
+    assert_eq!((back(notes), back(repairs), back(warnings)), (45, 6, 7));
 }

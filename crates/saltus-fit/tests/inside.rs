@@ -35,11 +35,13 @@ fn files() -> Vec<PathBuf> {
                 "read/columns/gates.rs",
                 "read/columns/signals.rs",
                 "read/columns/specimens.rs",
+                "read/sensed.rs",
                 "read/sequence.rs",
                 "read/heading/inside.rs",
                 "read/programs.rs",
                 "sound/onset.rs",
                 "sound/chain.rs",
+                "sound/pulse.rs",
             ])
             .map(|file| root().join(file))
             .collect();

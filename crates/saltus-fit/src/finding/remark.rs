@@ -207,6 +207,15 @@ pub enum Note {
         /// Its end, s.
         to: f64,
     },
+    /// The samples of a sensor have pulses.
+    Felt {
+        /// The column.
+        column: String,
+        /// How many pulses stand out of the noise.
+        pulses: usize,
+        /// How many of them are contacts that count.
+        contacts: usize,
+    },
     /// A sound was recorded too loud.
     Overdriven {
         /// The part of its samples that are as large as can be.

@@ -38,6 +38,8 @@ pub enum Part {
     Track,
     /// Sounds, by their times.
     Sound,
+    /// Pulses of a sensor, by their times.
+    Pulse,
 }
 
 /// Why a part was not used.
@@ -89,6 +91,8 @@ pub enum Why {
     Close,
     /// They come when no contact is due.
     NoBounce,
+    /// Contacts stand out more in another.
+    Fainter,
 }
 
 impl LeftAside {

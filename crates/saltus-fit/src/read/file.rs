@@ -16,6 +16,7 @@ use super::phrases::Phrase;
 use super::programs::{self, Recognised};
 use super::region::{self, Region};
 use super::rows::sifted;
+use super::sensed;
 use super::sheet::{Content, Part};
 use super::text::{self, text};
 use super::title::{self, Stated};
@@ -218,9 +219,18 @@ fn named(regions: &[Region<'_>], titles: &[Stated], parts: &mut [(String, Table)
     }
 }
 
-/// The table of a region: its columns by their names, the rows that hold readings, the quantities,
-/// and then the trials.
+/// The table of a region: its bounces, or what a sensor felt of them.
 fn one(region: &mut Region<'_>, options: &ReadOptions, metadata: Metadata) -> Result<Table, TableError> {
+    let felt = |region: &Region<'_>| sensed::table(region, options, metadata);
+    if let Some(table) = sensed::shows(region).then(|| felt(region)).flatten() {
+        return Ok(table);
+    }
+    bounces(region, options, metadata).or_else(|error| felt(region).ok_or(error))
+}
+
+/// The table of a region of bounces: its columns by their names, the rows that hold readings, the
+/// quantities, and then the trials.
+fn bounces(region: &mut Region<'_>, options: &ReadOptions, metadata: Metadata) -> Result<Table, TableError> {
     let mut columns = Columns::named(region, options, metadata.drop.is_some())?;
     let rows = sifted(region, &columns)?;
     region.rows = rows.rows.iter().map(|row| row.at).collect();

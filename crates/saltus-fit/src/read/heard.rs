@@ -46,7 +46,7 @@ impl Table {
 }
 
 /// The table, which is not yet checked.
-fn table(sound: Sound, options: &ReadOptions) -> Table {
+pub(super) fn table(sound: Sound, options: &ReadOptions) -> Table {
     let several = sound.drops().len() > 1;
     let trials = sound.drops().iter().enumerate().map(|(n, contacts)| {
         let reading = |contact: &crate::sound::Contact| Reading {
@@ -64,13 +64,8 @@ fn table(sound: Sound, options: &ReadOptions) -> Table {
     if sound.clipped() > CLIPPED {
         notes.push(Note::Overdriven { part: sound.clipped() }.into());
     }
-    let chance = |(contacts, &evidence): (&Vec<_>, &f64)| {
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // below a thousand
-        let once_in = evidence.min(SURE).exp() as u64;
-        (evidence < SURE).then_some(Doubt::Chance { contacts: contacts.len(), once_in })
-    };
-    let doubts = sound.drops().iter().zip(&sound.evidence).filter_map(chance).collect();
-    let left_aside = aside(&sound.unused);
+    let doubts = doubts(sound.drops().iter().map(Vec::len), &sound.evidence);
+    let left_aside = aside(Part::Sound, &sound.unused);
     let metadata = super::Metadata { drop: options.drop, ..super::Metadata::default() };
     Table {
         name: sound.name().to_owned(),
@@ -85,8 +80,18 @@ fn table(sound: Sound, options: &ReadOptions) -> Table {
     }
 }
 
-/// The sounds not used, together for each reason.
-fn aside(unused: &[(f64, Unused)]) -> Vec<LeftAside> {
+/// Drops of so many contacts each that may be heard by chance.
+pub(super) fn doubts(contacts: impl Iterator<Item = usize>, evidence: &[f64]) -> Vec<Doubt> {
+    let chance = |(contacts, &evidence): (usize, &f64)| {
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // below a thousand
+        let once_in = evidence.min(SURE).exp() as u64;
+        (evidence < SURE).then_some(Doubt::Chance { contacts, once_in })
+    };
+    contacts.zip(evidence).filter_map(chance).collect()
+}
+
+/// What was heard or felt and is not used, together for each reason.
+pub(super) fn aside(part: Part, unused: &[(f64, Unused)]) -> Vec<LeftAside> {
     let of = |kind: Unused| {
         let times: Vec<f64> = unused.iter().filter(|(_, why)| *why == kind).map(|(time, _)| *time).collect();
         let named: Vec<String> = times.iter().take(Lines::NAMED).map(|time| format!("{time:.3} s")).collect();
@@ -97,7 +102,7 @@ fn aside(unused: &[(f64, Unused)]) -> Vec<LeftAside> {
             Unused::Close => Why::Close,
             Unused::Stray => Why::NoBounce,
         };
-        (!times.is_empty()).then(|| LeftAside::new(Part::Sound, name, why))
+        (!times.is_empty()).then(|| LeftAside::new(part, name, why))
     };
     [Unused::Stray, Unused::Echo, Unused::Close].into_iter().filter_map(of).collect()
 }

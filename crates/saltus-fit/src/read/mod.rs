@@ -36,6 +36,7 @@ mod rows;
 mod said;
 mod samples;
 mod scales;
+mod sensed;
 mod sequence;
 mod sheet;
 mod stray;

@@ -102,10 +102,14 @@ pub(super) enum Phrase {
     Passed,
     /// What a sensor measures along its beam.
     Ranging,
+    /// How much a sensor shows; with a unit of length, how high a ball is.
+    Shown,
+    /// What a sensor shows that does not feel the floor.
+    Unfelt,
 }
 
 impl Phrase {
-    const ALL: [(&'static str, Self); 47] = [
+    const ALL: [(&'static str, Self); 49] = [
         ("missing", Self::Missing),
         ("about", Self::About),
         ("half", Self::Half),
@@ -153,6 +157,8 @@ impl Phrase {
         ("ditto", Self::Ditto),
         ("passed", Self::Passed),
         ("ranging", Self::Ranging),
+        ("shown", Self::Shown),
+        ("unfelt", Self::Unfelt),
     ];
 
     /// The phrases of this kind, in the order of the file.

@@ -13,7 +13,7 @@ use super::region::Region;
 use super::units::{Dimension, Unit};
 use super::vocabulary::{Atom, ROWS, folded, misspelt};
 use super::words::{Kind, Word, split};
-use crate::finding::Doubt;
+use crate::finding::{Doubt, Note};
 
 /// What a table's title states, and where.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -235,9 +235,12 @@ pub(super) fn doubted(region: &Region<'_>, table: &mut Table) {
     };
     let wanted =
         |value: &str| Heading::parse(value).turned_by().iter().any(|a| matches!(a, Atom::Predicted | Atom::Goal));
+    // What a sensor shows may be in any unit, `Normalized force`: its times are what they are.
+    let felt = table.notes.iter().any(|note| matches!(note.kind, Note::Felt { .. }));
+    let tells = |text: &str| turned(text) && (!felt || wanted(text));
     let titles = |aside: &&LeftAside| match row(aside) {
-        Some([name, value]) => turned(&name) || turned(&value) && wanted(&value),
-        None => turned(&aside.name),
+        Some([name, value]) => tells(&name) || turned(&value) && wanted(&value),
+        None => tells(&aside.name),
     };
     let title = region.aside[from..].iter().filter(|aside| !aside.name.starts_with('>')).find(titles);
     let title = title.map(|title| Doubt::Title { text: title.name.clone(), line: title.line.unwrap_or(1) });

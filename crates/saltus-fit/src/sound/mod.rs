@@ -3,6 +3,7 @@
 
 mod chain;
 mod onset;
+mod pulse;
 mod wav;
 mod wave;
 
@@ -15,7 +16,9 @@ use crate::error::TableError;
 use crate::finding::Lines;
 pub(crate) use chain::SURE;
 use chain::{Chain, LIKELY, chains};
-use onset::{Ear, Onset};
+use onset::Ear;
+pub(crate) use onset::Onset;
+pub(crate) use pulse::{Pulse, Pulses};
 use wav::Spec;
 pub(crate) use wav::is_wav;
 use wave::Drawn;
@@ -80,6 +83,45 @@ pub(crate) enum Unused {
     Close,
     /// It comes when no contact is due.
     Stray,
+}
+
+/// The contacts of bouncing balls among onsets.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Bounced {
+    /// Of each drop the onsets, at least three, and which contacts they are, from 1.
+    pub(crate) drops: Vec<Vec<(usize, usize)>>,
+    /// Of each drop, ln of one over how many as good ones come by chance.
+    pub(crate) evidence: Vec<f64>,
+    /// The other onsets, and why they are none.
+    pub(crate) unused: Vec<(usize, Unused)>,
+}
+
+impl Bounced {
+    /// The contacts among onsets; `None` where no ball bounces. One chain of all onsets is believed
+    /// where they are `felt`, for little else is.
+    pub(crate) fn among(onsets: &[Onset], felt: bool) -> Option<Self> {
+        let mut chains = chains(onsets);
+        let whole = |chain: &Chain| felt && chain.at.len() == onsets.len();
+        chains.retain(|chain| chain.counts >= 3 && (whole(chain) || is_believed(onsets, chain)));
+        let of = |chain: &Chain| {
+            let numbers = chain.numbers.iter().map(|number| number + 1);
+            chain.at.iter().copied().zip(numbers).take(chain.counts).collect()
+        };
+        let used = |n: &usize| chains.iter().any(|chain| chain.at[..chain.counts].contains(n));
+        let why = |n: usize| {
+            let mut contacts = chains.iter().flat_map(|chain| &chain.at).map(|&m| &onsets[m]);
+            if chains.iter().any(|chain| chain.at.contains(&n)) {
+                Unused::Close
+            } else if contacts.any(|contact| follows(&onsets[n], contact) && onsets[n].power < contact.power) {
+                Unused::Echo
+            } else {
+                Unused::Stray
+            }
+        };
+        let unused = (0..onsets.len()).filter(|n| !used(n)).map(|n| (n, why(n))).collect();
+        let evidence = chains.iter().map(|chain| chain.evidence).collect();
+        (!chains.is_empty()).then(|| Self { drops: chains.iter().map(of).collect(), evidence, unused })
+    }
 }
 
 impl Sound {
@@ -159,34 +201,19 @@ impl Sound {
     ) -> Result<Self, TableError> {
         ear.end();
         let onsets = std::mem::take(&mut ear.onsets);
-        let mut chains = chains(&onsets);
-        chains.retain(|chain| chain.counts >= 3 && is_believed(&onsets, chain));
         let part = start..start + ear.seconds();
-        if chains.is_empty() {
+        let Some(Bounced { drops, evidence, unused }) = Bounced::among(&onsets, false) else {
             return Err(nothing(name, &onsets, &part));
-        }
-        let contact = |(&n, number): (&usize, &usize)| {
+        };
+        let contact = |&(n, number): &(usize, usize)| {
             let Onset { time, sigma, .. } = onsets[n];
-            Contact { number: number + 1, time, sigma }
+            Contact { number, time, sigma }
         };
-        let of = |chain: &Chain| chain.at.iter().zip(&chain.numbers).take(chain.counts).map(contact).collect();
-        let used = |n: &usize| chains.iter().any(|chain| chain.at[..chain.counts].contains(n));
-        let why = |n: usize| {
-            let mut contacts = chains.iter().flat_map(|chain| &chain.at).map(|&m| &onsets[m]);
-            if chains.iter().any(|chain| chain.at.contains(&n)) {
-                Unused::Close
-            } else if contacts.any(|contact| follows(&onsets[n], contact) && onsets[n].power < contact.power) {
-                Unused::Echo
-            } else {
-                Unused::Stray
-            }
-        };
-        let unused = (0..onsets.len()).filter(|n| !used(n)).map(|n| (onsets[n].time, why(n))).collect();
+        let unused = unused.into_iter().map(|(n, why)| (onsets[n].time, why)).collect();
         #[allow(clippy::cast_precision_loss)] // far below 2^52 frames
         let clipped = ear.clipped as f64 / ear.frames.max(1) as f64;
-        let drops: Vec<Vec<Contact>> = chains.iter().map(of).collect();
+        let drops: Vec<Vec<Contact>> = drops.iter().map(|drop| drop.iter().map(contact).collect()).collect();
         let wave = draw(&around(&drops))?;
-        let evidence = chains.iter().map(|chain| chain.evidence).collect();
         Ok(Self { name: name.to_owned(), part, drops, evidence, unused, clipped, wave })
     }
 

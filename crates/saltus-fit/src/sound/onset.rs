@@ -36,14 +36,14 @@ const FULL: f32 = 0.99;
 
 /// The beginning of a sound.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Onset {
+pub(crate) struct Onset {
     /// When, s.
-    pub(super) time: f64,
+    pub(crate) time: f64,
     /// Its standard error, s: from where the wave has left what is before to where it is twice as
     /// large, and no less than a grain is spread.
-    pub(super) sigma: f64,
+    pub(crate) sigma: f64,
     /// The mean square of its loudest grain.
-    pub(super) power: f32,
+    pub(crate) power: f32,
 }
 
 impl Onset {

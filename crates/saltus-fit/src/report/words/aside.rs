@@ -30,6 +30,7 @@ impl fmt::Display for Why {
             Self::Echo => "an echo of a contact, or its ringing",
             Self::Close => "contacts too close together for their times to tell the COR",
             Self::NoBounce => "not when a contact of the ball is due",
+            Self::Fainter => "contacts show more in another",
         })
     }
 }
@@ -44,6 +45,7 @@ impl fmt::Display for LeftAside {
             Part::Sheet => "sheet",
             Part::Track => "track",
             Part::Sound => "sound",
+            Part::Pulse => "pulse",
         };
         if let Some(within) = &self.within {
             write!(f, "{within}: ")?;
