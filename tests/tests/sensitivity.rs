@@ -4,6 +4,8 @@
 
 #[path = "sensitivity/models.rs"]
 mod models;
+#[path = "sensitivity/sliding.rs"]
+mod sliding;
 
 use models::{Bounce, Coin, Dosed, Dragged, Hopper, Phase, Tossed};
 use proptest::prelude::*;

@@ -71,7 +71,9 @@ pub use saltus_derive::State;
 pub use analysis::distance::Closeness;
 pub use analysis::frames::frame_by_frame;
 #[cfg(feature = "num-dual")]
-pub use analysis::linearize::{Lift, Linearize, Number, Over, Saltation, Sensitive, Tangent, Wrt, saltation};
+pub use analysis::linearize::{
+    Lift, Linearize, LinearizeSides, Number, Over, Saltation, Sensitive, Tangent, Wrt, saltation,
+};
 #[cfg(feature = "num-dual")]
 pub use analysis::return_map;
 pub use analysis::reverse::{Invertible, Reversed};

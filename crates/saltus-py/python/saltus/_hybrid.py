@@ -336,8 +336,9 @@ class Hybrid:
         """How the state at the end, and the times of the jumps, depend on parameters and coordinates.
 
         ``by`` are names of parameters, and of coordinates for the state at the start; all parameters
-        unless given. Derivatives are carried along the flow and through every jump (saltation), not
-        differences of runs. All functions must be formulas.
+        unless given. Derivatives are carried along the flow, through every jump (saltation) and
+        through slides, whose states forget what leads off the surface: not differences of runs. All
+        functions must be formulas.
 
         >>> import saltus
         >>> ball = (
@@ -348,11 +349,18 @@ class Hybrid:
         >>> gradient = ball.gradient("flight", [1.0, 0.0], (0.0, 1.0), by=["g", "height"])
         >>> gradient.times.round(6).tolist()  # t = √(2 h/g)
         [[-0.023013], [0.225762]]
+        >>> block = (  # each swing takes 2 rub/k off, and after two of them it sticks
+        ...     saltus.Hybrid(["place", "speed"], {"k": 100.0, "rub": 3.0})
+        ...     .mode("forth", lambda t, x, p: [x[1], -p.k * x[0] - p.rub])
+        ...     .mode("back", lambda t, x, p: [x[1], -p.k * x[0] + p.rub])
+        ...     .slide("sticks", "forth", "back", lambda t, x, p: x[1])
+        ... )
+        >>> gradient = block.gradient("back", [0.1, 0.0], (0.0, 10.0), by=["rub", "place"])
+        >>> gradient.end[:, 0].round(9).tolist()
+        [-0.04, 1.0]
         """
         if self.called:
             raise ValueError("derivatives need formulas: a function of this system is called in Python")
-        if any(isinstance(mode.flow, _Slide) for mode in self._modes.values()):
-            raise ValueError("derivatives of runs that may slide are not carried: take differences of runs")
         options = _options(method, rtol, atol, longest_step, most_jumps, most_steps, 1 << 62)
         values = self._values(parameters)
         names = list(self.parameters if by is None else by)

@@ -22,7 +22,8 @@ class Gradient:
     """Derivatives of a run.
 
     ``by`` names what they are by; ``end[k]`` is how the state at the end depends on ``by[k]``, at
-    fixed time; ``times[k, n]`` how the time of jump n does.
+    fixed time; ``times[k, n]`` how the time of jump n does, NaN of the end of a slide that loses
+    both its flows at once.
     """
 
     by: list[str]

@@ -299,9 +299,9 @@ impl Hybrid {
             beyond: of.beyond.as_ref().map(|(to, reset)| (*to, reset.as_ref().map(again))),
         });
         let slide = |([above, below, sliding], surface): &([Mode; 3], Arc<tape::Tape>)| {
-            let surface = surface.bound(&p);
+            let (given, surface) = (Arc::clone(surface), surface.bound(&p));
             let affine = surface.affine(self.coordinates).and_then(|mut rows| rows.pop());
-            SlideOf { above: *above, below: *below, sliding: *sliding, surface, affine }
+            SlideOf { above: *above, below: *below, sliding: *sliding, given, surface, affine }
         };
         let slides = self.slides.iter().map(slide).collect();
         Ok(Model::new((modes.collect(), slides), like, p, named, options.is_stepped()))

@@ -205,8 +205,8 @@ impl<S: Vector> Model<S> {
         Self { modes, slides, p, named, raised: Raised::default(), like }
     }
 
-    fn sides<'a>(&'a self, slide: &'a SlideOf) -> Filippov<Pair<'a, S, impl Fn(Mode, f64, &S) -> S>> {
-        Pair::of(slide, |mode, t, x| self.flow_of(mode, t, x))
+    fn sides<'a>(&'a self, slide: &'a SlideOf) -> Filippov<Pair<'a, Self>> {
+        Pair::of(slide, self, &self.like)
     }
 
     /// The flow of a mode, which does not slide.
@@ -388,14 +388,18 @@ impl<S: Vector> Linearize for Model<S> {
     fn flow_over<D: Number>(&self, mode: Mode, t: D, x: Over<S, D>, p: [D; MOST_PARAMETERS]) -> Over<S, D> {
         match &self.mode(mode).flow {
             Ok(flow) => self.vector_over(flow, t, &x, &p),
-            Err(_) => self.like.lift(|_| D::from(f64::NAN)),
+            Err(slide) => self.sides(&self.slides[*slide]).flow_over(Side::Sliding, t, x, p),
         }
     }
 
     fn guard_over<D: Number>(&self, edge: Edge, t: D, x: Over<S, D>, p: [D; MOST_PARAMETERS]) -> D {
         let (mut value, like) = (D::from(f64::NAN), &self.like);
-        if let Taken::By(guard) = &self.edge(edge).taken {
-            guard.over(t, |i| like.pick(&x, i), |i| p[i], |_, guard| value = guard);
+        match &self.edge(edge).taken {
+            Taken::By(guard) => guard.over(t, |i| like.pick(&x, i), |i| p[i], |_, guard| value = guard),
+            Taken::Passage(slide, passage) => {
+                value = self.sides(&self.slides[*slide]).guard_over(*passage, t, x, p);
+            }
+            Taken::Ticking => {}
         }
         value
     }
@@ -410,6 +414,16 @@ impl<S: Vector> Linearize for Model<S> {
     fn beyond_over<D: Number>(&self, mode: Mode, t: D, x: Over<S, D>, p: [D; MOST_PARAMETERS]) -> Option<Over<S, D>> {
         let (_, reset) = self.mode(mode).beyond.as_ref()?;
         Some(reset.as_ref().map_or(x, |reset| self.vector_over(reset, t, &x, &p)))
+    }
+
+    /// Clocks are numbers: no parameter moves them.
+    fn tick_over<D: Number>(&self, _: Mode, _: Edge, t: f64, _: [D; MOST_PARAMETERS]) -> Option<D> {
+        Some(D::from(t))
+    }
+
+    fn surface_over<D: Number>(&self, mode: Mode, t: D, x: Over<S, D>, p: [D; MOST_PARAMETERS]) -> Option<D> {
+        let slide = self.mode(mode).flow.as_ref().err()?;
+        self.sides(&self.slides[*slide]).surface_over(Side::Sliding, t, x, p)
     }
 
     fn exact_over<D: Number>(

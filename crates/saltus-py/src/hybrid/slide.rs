@@ -1,9 +1,9 @@
 //! Modes that slide along a surface between two others, by the engine's [`Filippov`].
 
-use std::marker::PhantomData;
+use std::sync::Arc;
 
 use saltus::num_dual::Dual64;
-use saltus::{Filippov, Passage, Side, State, TwoSided};
+use saltus::{Automaton, Filippov, Lift, Linearize, LinearizeSides, Number, Over, Passage, Side, State, TwoSided};
 
 use super::names::Mode;
 use super::tape::Tape;
@@ -13,7 +13,9 @@ pub(crate) struct SlideOf {
     pub(crate) above: Mode,
     pub(crate) below: Mode,
     pub(crate) sliding: Mode,
-    /// Positive above; with its parameters bound.
+    /// Positive above; as it is given, for numbers that carry a derivative by a parameter.
+    pub(crate) given: Arc<Tape>,
+    /// The same with its parameters bound.
     pub(crate) surface: Tape,
     /// The row a and the constant b of a surface a·x + b = 0.
     pub(crate) affine: Option<(Vec<f64>, f64)>,
@@ -61,20 +63,21 @@ impl SlideOf {
     }
 }
 
-/// The flows of two modes on the two sides of a surface.
-pub(crate) struct Pair<'a, S, F> {
+/// The flows of two modes of `of` on the two sides of a surface.
+pub(crate) struct Pair<'a, A: Automaton> {
     slide: &'a SlideOf,
-    flow: F,
-    state: PhantomData<fn(&S)>,
+    of: &'a A,
+    /// A state of its dimension.
+    like: &'a A::State,
 }
 
-impl<'a, S: State, F: Fn(Mode, f64, &S) -> S> Pair<'a, S, F> {
-    pub(crate) fn of(slide: &'a SlideOf, flow: F) -> Filippov<Self> {
-        Filippov::of(Self { slide, flow, state: PhantomData })
+impl<'a, A: Linearize<Mode = Mode>> Pair<'a, A> {
+    pub(crate) fn of(slide: &'a SlideOf, of: &'a A, like: &'a A::State) -> Filippov<Self> {
+        Filippov::of(Self { slide, of, like })
     }
 
     /// How the surface depends on a coordinate, or on time.
-    fn slope(&self, t: f64, x: &S, by: Option<usize>) -> f64 {
+    fn slope(&self, t: f64, x: &A::State, by: Option<usize>) -> f64 {
         let number = |value: f64, of: Option<usize>| Dual64::new(value, if of == by { 1.0 } else { 0.0 });
         let mut slope = f64::NAN;
         let (t, x) = (number(t, None), |i: usize| number(x.get(i), Some(i)));
@@ -83,32 +86,58 @@ impl<'a, S: State, F: Fn(Mode, f64, &S) -> S> Pair<'a, S, F> {
     }
 }
 
-impl<S: State, F: Fn(Mode, f64, &S) -> S> TwoSided for Pair<'_, S, F> {
-    type State = S;
+impl<A: Linearize<Mode = Mode>> TwoSided for Pair<'_, A> {
+    type State = A::State;
 
-    fn above(&self, t: f64, x: &S) -> S {
-        (self.flow)(self.slide.above, t, x)
+    fn above(&self, t: f64, x: &A::State) -> A::State {
+        self.of.flow(self.slide.above, t, x)
     }
 
-    fn below(&self, t: f64, x: &S) -> S {
-        (self.flow)(self.slide.below, t, x)
+    fn below(&self, t: f64, x: &A::State) -> A::State {
+        self.of.flow(self.slide.below, t, x)
     }
 
-    fn surface(&self, t: f64, x: &S) -> f64 {
+    fn surface(&self, t: f64, x: &A::State) -> f64 {
         let mut value = f64::NAN;
         self.slide.surface.run(t, |i| x.get(i), |_| f64::NAN, |_, surface| value = surface);
         value
     }
 
-    fn normal(&self, t: f64, x: &S) -> S {
+    fn normal(&self, t: f64, x: &A::State) -> A::State {
         x.with(|i| self.slope(t, x, Some(i)))
     }
 
-    fn surface_rate(&self, t: f64, x: &S) -> f64 {
+    fn surface_rate(&self, t: f64, x: &A::State) -> f64 {
         self.slope(t, x, None)
     }
 
     fn affine(&self) -> bool {
         self.slide.affine.is_some()
+    }
+}
+
+impl<A: Linearize<Mode = Mode>> LinearizeSides for Pair<'_, A> {
+    type Parameters = A::Parameters;
+
+    fn parameters(&self) -> A::Parameters {
+        self.of.parameters()
+    }
+
+    fn shape(&self) -> A::State {
+        self.like.clone()
+    }
+
+    fn above_over<D: Number>(&self, t: D, x: Over<A::State, D>, p: Over<A::Parameters, D>) -> Over<A::State, D> {
+        self.of.flow_over(self.slide.above, t, x, p)
+    }
+
+    fn below_over<D: Number>(&self, t: D, x: Over<A::State, D>, p: Over<A::Parameters, D>) -> Over<A::State, D> {
+        self.of.flow_over(self.slide.below, t, x, p)
+    }
+
+    fn surface_over<D: Number>(&self, t: D, x: Over<A::State, D>, p: Over<A::Parameters, D>) -> D {
+        let (mut value, like, given) = (D::from(f64::NAN), self.like, self.parameters());
+        self.slide.given.run(t, |i| like.pick(&x, i), |i| given.pick(&p, i), |_, surface| value = surface);
+        value
     }
 }

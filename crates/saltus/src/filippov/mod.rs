@@ -252,7 +252,7 @@ pub enum Passage {
 /// L. Dieci, L. Lopez, J. Comput. Appl. Math. 236 (2012) 3967, doi:10.1016/j.cam.2012.02.011.
 #[derive(Clone, Copy, Debug)]
 pub struct Filippov<T> {
-    system: T,
+    pub(crate) system: T,
 }
 
 impl<T: TwoSided> Filippov<T> {
@@ -304,7 +304,7 @@ impl<T: TwoSided> Filippov<T> {
 
     /// Whether both flows are one from here on, and not only at this point: a brake that is
     /// released.
-    fn are_one(&self, t: f64, x: &T::State, above: &T::State, below: &T::State) -> bool {
+    pub(crate) fn are_one(&self, t: f64, x: &T::State, above: &T::State, below: &T::State) -> bool {
         if !agree(above, below) {
             return false;
         }

@@ -3,9 +3,11 @@
 
 mod passage;
 mod sensitive;
+mod sliding;
 
 pub use passage::{Saltation, saltation};
 pub use sensitive::{Sensitive, Tangent, Wrt};
+pub use sliding::LinearizeSides;
 
 use nalgebra::SVector;
 use num_dual::{Dual64, DualNum};
@@ -298,6 +300,23 @@ pub trait Linearize: Automaton<State: Lift> {
         p: Over<Self::Parameters, D>,
     ) -> Option<D> {
         let _ = (mode, edge, t, p);
+        None
+    }
+
+    /// The surface h(t, x, p) = 0 that the states of `mode` keep to, by its left side; `None` where
+    /// they are free to go anywhere.
+    ///
+    /// A neighbour that starts off the surface starts in another mode, and its derivative depends
+    /// on the side: a run whose columns leave it where they start, `h_x S + h_q ≠ 0`, is
+    /// refused.
+    fn surface_over<D: Number>(
+        &self,
+        mode: Self::Mode,
+        t: D,
+        x: Over<Self::State, D>,
+        p: Over<Self::Parameters, D>,
+    ) -> Option<D> {
+        let _ = (mode, t, x, p);
         None
     }
 

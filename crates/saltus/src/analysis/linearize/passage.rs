@@ -130,6 +130,8 @@ enum At {
     Clock,
     /// A guard that switches in a stop, at a time that nothing moves.
     Stop,
+    /// An end that the model does not determine, at a time without a derivative.
+    Open,
 }
 
 impl<'a, A: Linearize> Passage<'a, A> {
@@ -167,6 +169,9 @@ impl<'a, A: Linearize> Passage<'a, A> {
         let slope = |i| automaton.guard_over(edge, Dual64::from(t), moving_in(x, Some(i)), moving_in(&p, None)).eps;
         let gradient = x.with(slope);
         let (guard, rate, bend) = (guard.re, guard.v1, guard.v2);
+        if guard.is_nan() && automaton.about(edge).undetermined {
+            return Ok(Self { at: At::Open, ..standing });
+        }
         Ok(Self { guard, gradient, rate, bend, at: At::Guard, ..standing })
     }
 
@@ -209,6 +214,7 @@ impl<'a, A: Linearize> Passage<'a, A> {
             At::Guard => return Ok(-(self.along(dx) + self.by_parameter(p)) / self.rate),
             At::Clock if p.is_some() => {}
             At::Clock | At::Stop => return Ok(0.0),
+            At::Open => return Ok(f64::NAN),
         }
         let parameters = moving_in(&self.automaton.parameters(), p);
         let tick = self.automaton.tick_over(self.mode, self.edge, self.t, parameters);
@@ -253,11 +259,14 @@ impl<'a, A: Linearize> Passage<'a, A> {
     /// Where the neighbour that crosses with this `delay` is after the jump, δx⁺.
     pub(super) fn across(&self, dx: &A::State, p: Option<usize>, delay: f64) -> A::State {
         let (before, after) = &self.flows;
-        let carried = dx.with(|i| dx.get(i) + before.get(i) * delay);
+        // Where nobody crosses later the flows play no part: they may be undetermined.
+        let delay = if self.at == At::Open { 0.0 } else { delay };
+        let later = |flow: &A::State, i: usize| if delay == 0.0 { 0.0 } else { flow.get(i) * delay };
+        let carried = dx.with(|i| dx.get(i) + later(before, i));
         let parameters = moving_in(&self.automaton.parameters(), p);
         let reset =
             self.automaton.reset_over(self.edge, Dual64::new(self.t, delay), moving(self.x, &carried), parameters);
         let landed = velocity(&reset, &self.after);
-        landed.with(|i| landed.get(i) - after.get(i) * delay)
+        landed.with(|i| landed.get(i) - later(after, i))
     }
 }

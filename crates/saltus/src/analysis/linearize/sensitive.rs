@@ -10,6 +10,7 @@ use crate::automaton::clocks::{Clock, Clocks};
 use crate::automaton::edges::Edges;
 use crate::automaton::solution::{Fall, Polynomial, Solution};
 use crate::automaton::{About, Automaton, Entry, Limit};
+use crate::certainty::TINY;
 use crate::error::{ErrorKind, Refusal};
 use crate::jump::JumpOf;
 use crate::state::State;
@@ -37,6 +38,8 @@ pub struct Tangent<S, const K: usize> {
     pub dt: [f64; K],
     /// When that was, or when the run started.
     jumped: f64,
+    /// Whether nothing has come since the columns were given.
+    given: bool,
 }
 
 impl<S: State, const K: usize> State for Tangent<S, K> {
@@ -58,7 +61,7 @@ impl<S: State, const K: usize> State for Tangent<S, K> {
             columns[k] = columns[k].with(|i| f(n * (k + 1) + i));
             k += 1;
         }
-        Self { x, columns, dt: self.dt, jumped: self.jumped }
+        Self { x, columns, dt: self.dt, jumped: self.jumped, given: self.given }
     }
     /// That of the state; `voltage by q1` in the column of q₁.
     fn name(&self, i: usize) -> Cow<'static, str> {
@@ -166,7 +169,7 @@ impl<'a, A: Linearize, const K: usize> Sensitive<'a, A, K> {
             Wrt::Parameter(k) if k < parameters => x.with(|_| 0.0),
             _ => x.with(|_| f64::NAN),
         });
-        Tangent { x, columns, dt: [0.0; K], jumped: t }
+        Tangent { x, columns, dt: [0.0; K], jumped: t, given: true }
     }
 
     /// How the state x⁻ just before the jump depends on each q as the jump moves in time, dx⁻/dq =
@@ -195,6 +198,21 @@ impl<'a, A: Linearize, const K: usize> Sensitive<'a, A, K> {
         }
     }
 
+    /// Whether column `k` leads off the surface that the states of `mode` keep to, by more than
+    /// rounding.
+    fn leaves(&self, mode: A::Mode, t: f64, x: &Tangent<A::State, K>, k: usize) -> bool {
+        let p = self.automaton.parameters();
+        let slope = |column: &A::State, by: Option<usize>| {
+            let surface = self.automaton.surface_over(mode, Dual64::from(t), moving(&x.x, column), moving_in(&p, by));
+            surface.map_or(0.0, |h| h.eps)
+        };
+        let column = &x.columns[k];
+        let part = |i: usize| slope(&column.with(|j| if i == j { column.get(i) } else { 0.0 }), None).abs();
+        let by_parameter = slope(&column.with(|_| 0.0), self.parameter(k));
+        let size = (0..x.x.len()).map(part).sum::<f64>() + by_parameter.abs();
+        slope(column, self.parameter(k)).abs() > TINY * size
+    }
+
     /// The derivatives of a polynomial's coefficients at fixed t are the coefficients of the
     /// columns.
     fn polynomial(&self, mode: A::Mode, t: f64, x: &Tangent<A::State, K>) -> Option<Polynomial<Tangent<A::State, K>>> {
@@ -212,7 +230,7 @@ impl<'a, A: Linearize, const K: usize> Sensitive<'a, A, K> {
                 let column = columns[k].as_ref().and_then(|column| column.coefficients().get(power));
                 column.map_or_else(|| c.with(|_| 0.0), |column| velocity(column, c))
             });
-            Tangent { x: c.clone(), columns, dt: x.dt, jumped: x.jumped }
+            Tangent { x: c.clone(), columns, dt: x.dt, jumped: x.jumped, given: x.given }
         }))
     }
 }
@@ -231,7 +249,7 @@ impl<A: Linearize, const K: usize> Automaton for Sensitive<'_, A, K> {
             let slope = self.automaton.flow_over(mode, Dual64::from(t), moving(&x.x, &x.columns[k]), parameters);
             velocity(&slope, &x.x)
         });
-        Tangent { x: self.automaton.flow(mode, t, &x.x), columns, dt: x.dt, jumped: x.jumped }
+        Tangent { x: self.automaton.flow(mode, t, &x.x), columns, dt: x.dt, jumped: x.jumped, given: x.given }
     }
 
     fn edges(&self, mode: A::Mode) -> Edges<'_, A::Edge> {
@@ -251,7 +269,7 @@ impl<A: Linearize, const K: usize> Automaton for Sensitive<'_, A, K> {
         // An edge that fires where the last jump led happens when that jump happens.
         let follows = self.automaton.about(edge).entry == Entry::Fire && passage.is_outside();
         let columns = std::array::from_fn(|_| passage.after.clone());
-        let mut after = Tangent { x: passage.after.clone(), columns, dt: x.dt, jumped: t };
+        let mut after = Tangent { x: passage.after.clone(), columns, dt: x.dt, jumped: t, given: false };
         for (k, column) in x.columns.iter().enumerate() {
             let p = self.parameter(k);
             // So does one that neighbouring runs, too, take at once after the last: a ball that
@@ -298,7 +316,7 @@ impl<A: Linearize, const K: usize> Automaton for Sensitive<'_, A, K> {
         let (before, onward) = (self.automaton.flow(mode, t, &x.x), self.automaton.flow(to, t, &after));
         let p = self.automaton.parameters();
         let columns = std::array::from_fn(|_| after.clone());
-        let mut beyond = Tangent { x: after.clone(), columns, dt: x.dt, jumped: t };
+        let mut beyond = Tangent { x: after.clone(), columns, dt: x.dt, jumped: t, given: false };
         for (k, dt) in x.dt.into_iter().enumerate() {
             let carried = x.columns[k].with(|i| x.columns[k].get(i) + before.get(i) * dt);
             let parameters = moving_in(&p, self.parameter(k));
@@ -339,6 +357,13 @@ impl<A: Linearize, const K: usize> Automaton for Sensitive<'_, A, K> {
                 "mode {mode:?} has stops, and whether a parameter moves them is not given: promise that none does with `Linearize::stops_stand`, or make each a clock with `Linearize::tick_over`"
             ));
         }
-        self.automaton.validate(mode, t, &x.x)
+        self.automaton.validate(mode, t, &x.x)?;
+        match (0..K).find(|&k| x.given && self.leaves(mode, t, x, k)) {
+            Some(k) => Err(format!(
+                "mode {mode:?} keeps to a surface, and {:?} leads off it, where the derivative is another to each side: take it by what leads along the surface, add to its column what keeps the start there (Sensitive::start), or start beside the surface",
+                self.wrt[k]
+            )),
+            None => Ok(()),
+        }
     }
 }
