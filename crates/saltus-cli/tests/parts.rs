@@ -149,7 +149,10 @@ fn another_sweep_is_refused() {
     place.done("rows", &["--chunk", "20"]);
     let whole = place.files("rows");
     let said = place.refused("rows", &["--until", "2s"]);
-    assert!(said.contains("'rows' holds another sweep: its `until_s` is null, here it is \"2\""), "{said}");
+    assert!(
+        said.contains("'rows' holds another sweep: its `until_s` is null, here it is 2.0; name another folder"),
+        "{said}"
+    );
     let said = place.refused("rows", &["--chunk", "30"]);
     assert!(said.contains("have 20 rows, and not 30"), "{said}");
     fs::write(place.path("scene.toml"), DROP.replace("0.5", "0.6")).unwrap();

@@ -21,12 +21,14 @@ mod core {
     #[pymodule_export]
     use super::scene::{Motion, accuracy, explain, simulate, solve};
     #[pymodule_export]
-    use super::sweep::{sweep_plan, sweep_rows};
+    use super::sweep::{sweep_difference, sweep_identity, sweep_pace, sweep_part, sweep_parts, sweep_rows};
 
     use pyo3::prelude::*;
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("SWEEP_PLAN", saltus_scene::sweep::PLAN)?;
+        module.add("SWEEP_KEY", saltus_scene::sweep::KEY)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

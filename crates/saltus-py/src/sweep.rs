@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use saltus_scene::Run;
-use saltus_scene::sweep::{Cells, Column, RowFormat, Sweep};
+use saltus_scene::sweep::{Cells, Column, Identity, RowFormat, Sweep};
 use saltus_scene::vary::{Variation, Vary};
 
 use crate::fail::{self, named};
@@ -52,17 +52,50 @@ fn planned<'a>(name: &str, toml: &'a [u8], vary: &'a Vary, asked: &Asked) -> PyR
     Sweep::new(name, toml, vary, run, RowFormat::Csv, columns.transpose()?.as_deref()).map_err(fail::scene)
 }
 
-/// How many runs there are, and the names of the columns.
+/// All that the rows depend on, as JSON with a hash of itself.
 #[pyfunction]
-pub(crate) fn sweep_plan(
+pub(crate) fn sweep_identity(
+    py: Python<'_>,
     name: &str,
     toml: &[u8],
     values: Vec<(String, Given)>,
     asked: Asked,
-) -> PyResult<(u64, Vec<String>)> {
+) -> PyResult<String> {
     let vary = vary(values, &asked)?;
     let sweep = planned(name, toml, &vary, &asked)?;
-    Ok((sweep.runs(), sweep.headers().to_vec()))
+    py.detach(|| Identity::of(&sweep)).map(|identity| identity.said().to_owned()).map_err(fail::scene)
+}
+
+/// How many rows are a part, as long as rows take here.
+#[pyfunction]
+pub(crate) fn sweep_pace(
+    py: Python<'_>,
+    name: &str,
+    toml: &[u8],
+    values: Vec<(String, Given)>,
+    asked: Asked,
+) -> PyResult<u64> {
+    let vary = vary(values, &asked)?;
+    let sweep = planned(name, toml, &vary, &asked)?;
+    Ok(py.detach(|| saltus_scene::sweep::pace(&sweep)))
+}
+
+/// What first tells the sweep that is `found` from the one here, in words; both as JSON.
+#[pyfunction]
+pub(crate) fn sweep_difference(here: &str, found: &str) -> Option<String> {
+    saltus_scene::sweep::difference(here, found)
+}
+
+/// The first run of each part, and that after its last.
+#[pyfunction]
+pub(crate) fn sweep_parts(runs: u64, chunk: u64) -> Vec<(u64, u64)> {
+    saltus_scene::sweep::parts(runs, chunk).map(|part| (part.start, part.end)).collect()
+}
+
+/// The name of the part that begins with a run.
+#[pyfunction]
+pub(crate) fn sweep_part(start: u64, runs: u64) -> String {
+    saltus_scene::sweep::part(start, runs)
 }
 
 /// Rows of some runs, by columns with their names; on all cores, or on this one.

@@ -111,22 +111,146 @@ def test_ray_makes_the_same_rows(tmp_path):
     assert rows.missing == [] and bytes_of(rows) == bytes_of(swept())
 
 
-def test_a_folder_of_the_tool(tool, tmp_path):
-    vary = [part for key, values in GRID.items() for part in ("--vary", f"{key}={values if isinstance(values, str) else ','.join(map(str, values))}")]
-    scene = tmp_path / "drop.toml"
-    scene.write_text("restitution = 0.8\nball = { height = '1 m' }\n")
-    for share in ("2/2", "1/2"):
-        done = subprocess.run([tool, "sweep", scene, *vary, "--into", tmp_path / "rows", "--chunk", "13", "--part", share], capture_output=True, text=True)
-        assert done.returncode == 0 and done.stdout == "", done.stderr
-        rows = saltus.Sweep(tmp_path / "rows")
-        assert bool(rows.missing) == (share == "2/2")
-    ours = swept().table()
-    assert rows.table().replace_schema_metadata().equals(ours.replace_schema_metadata())
-    assert pandas.read_parquet(tmp_path / "rows").equals(swept().to_frame())
-    said = json.loads(pyarrow.parquet.read_metadata(tmp_path / "rows/part-000.parquet").metadata[b"saltus"])
-    assert said["hash"] == rows.plan["hash"] and said["scene"] == scene.read_text()
-    with pytest.raises(saltus.SaltusError, match="holds another sweep"):
-        swept(into=tmp_path / "rows")
+SCENE = "restitution = 0.8\nball = { height = '1 m' }\n"
+
+
+def shared(tool, folder, scene=SCENE):
+    """The tool's sweep and Python's of one scene, as two that write to one folder."""
+    path = folder / "drop.toml"
+    path.write_bytes(scene.encode())
+    rows = folder / "rows"
+
+    def by_tool(*options):
+        vary = ["--vary", "restitution=0.5:0.9:40", "--vary", "ball.height=0.5,1,2"]
+        done = subprocess.run([tool, "sweep", path, *vary, "--into", rows, *options], capture_output=True, text=True)
+        return done.returncode, done.stderr
+
+    def by_python(**options):
+        return saltus.sweep(path, **{"vary": GRID, "into": rows, "progress": False, **options})
+
+    return rows, by_tool, by_python
+
+
+def test_a_folder_of_the_tool_is_gone_on_with(tool, tmp_path):
+    folder, by_tool, by_python = shared(tool, tmp_path)
+    assert by_tool("--chunk", "13", "--part", "2/2")[0] == 0
+    theirs = {path.name: path.read_bytes() for path in folder.iterdir()}
+    rows = saltus.Sweep(folder)
+    assert len(rows.missing) == 5
+    rows = by_python()
+    assert rows.missing == [] and len(list(folder.iterdir())) == 11
+    assert theirs == {name: (folder / name).read_bytes() for name in theirs}, "what is there is not made again"
+    assert rows.table().replace_schema_metadata().equals(swept().table().replace_schema_metadata())
+    assert pandas.read_parquet(folder).equals(swept().to_frame())
+    assert polars.read_parquet(folder / "*.parquet").height == 120
+    said = {pyarrow.parquet.read_metadata(path).metadata[b"saltus"] for path in folder.glob("*.parquet")}
+    assert len(said) == 1 and json.loads(said.pop())["scene"] == SCENE
+    # The tool finds all of it done.
+    assert by_tool() == (0, "") and len(list(folder.iterdir())) == 11
+
+
+def test_a_folder_of_python_is_gone_on_with_by_the_tool(tool, tmp_path):
+    folder, by_tool, by_python = shared(tool, tmp_path)
+    by_python(chunk=13, part="1/2")
+    ours = {path.name: path.read_bytes() for path in folder.iterdir()}
+    assert by_tool("--part", "1/2")[0] == 0 and {path.name: path.read_bytes() for path in folder.iterdir()} == ours
+    # A part that is torn, and what one who was killed has left.
+    torn = folder / "part-026.parquet"
+    torn.write_bytes(torn.read_bytes()[:-9])
+    (folder / ".part-013.parquet.0123.part").write_bytes(b"left")
+    assert by_tool() == (0, "")
+    names = sorted(path.name for path in folder.iterdir())
+    assert names == ["_sweep.json", *(f"part-{start:03}.parquet" for start in range(0, 120, 13))]
+    assert all((folder / name).read_bytes() == ours[name] for name in ours if name != torn.name)
+    rows = saltus.Sweep(folder)
+    assert rows.missing == [] and rows.table()["run"].to_pylist() == list(range(120))
+    assert rows.table().replace_schema_metadata().equals(swept().table().replace_schema_metadata())
+    assert by_python().missing == []
+
+
+@pytest.mark.parametrize("scene", [SCENE.replace("\n", "\r\n"), "\ufeff" + SCENE, SCENE + "# größer\n"])
+def test_scenes_are_one_however_their_lines_end(tool, tmp_path, scene):
+    _, by_tool, by_python = shared(tool, tmp_path, scene=scene)
+    by_python(chunk=40, part="1/3")
+    assert by_tool("--part", "2/3")[0] == 0
+    assert by_python(part="3/3").missing == []
+
+
+def test_both_write_to_one_folder_at_once(tool, tmp_path):
+    whole = swept().table().replace_schema_metadata()
+    for attempt in range(4):
+        (tmp_path / str(attempt)).mkdir()
+        folder, by_tool, by_python = shared(tool, tmp_path / str(attempt))
+        with concurrent.futures.ThreadPoolExecutor(4) as pool:
+            ways = [pool.submit(by_tool, "--chunk", "3"), pool.submit(by_python, chunk=3)] * 2
+            assert all(way.result() for way in ways) and ways[0].result()[0] == 0
+        rows = saltus.Sweep(folder)
+        assert rows.missing == [] and len(list(folder.iterdir())) == 41
+        assert rows.table().replace_schema_metadata().equals(whole)
+
+
+@pytest.mark.parametrize("parts", [1, 9])
+def test_killed_here_and_gone_on_with_by_the_tool(tool, tmp_path, unbroken, parts):
+    """And killed there, and gone on with here."""
+    scene = tmp_path / "drag.toml"
+    scene.write_text(saltus.Scene({"drag": {"per_length": 0.1}, **DROP}).toml)
+    vary = ["--vary", "restitution=0.5:0.99:60", "--vary", "ball.height=1m:10m:50"]
+    folder = tmp_path / "rows"
+    process = begun(folder, parts)
+    process.kill()
+    process.communicate()
+    there = {path.name: path.stat().st_ino for path in folder.glob("part-*")}
+    tools = subprocess.Popen([tool, "-q", "sweep", scene, *vary, "--into", folder], stderr=subprocess.PIPE)
+    end = time.monotonic() + 60
+    while tools.poll() is None and len(list(folder.glob("part-*"))) < len(there) + 10:
+        assert time.monotonic() < end
+    tools.kill()
+    assert b"another sweep" not in tools.communicate()[1]
+    assert len(list(folder.glob("part-*"))) >= len(there) + 10
+    assert subprocess.run([sys.executable, "-c", SLOW, str(folder)]).returncode == 0
+    rows = saltus.Sweep(folder)
+    assert there == {name: (folder / name).stat().st_ino for name in there}, "what is there is not made again"
+    assert rows.missing == [] and bytes_of(rows) == unbroken
+
+
+@pytest.mark.parametrize(
+    ("tools", "ours"),
+    [
+        (["--until", "2s"], {"until": 2}),
+        (["--most-jumps", "7"], {"most_jumps": 7}),
+        (["--columns", "impacts,rest_s"], {"columns": ["impacts", "rest_s"]}),
+        (["--random", "30", "--seed", "5"], {"random": 30, "seed": 5}),
+    ],
+)
+def test_what_is_another_sweep_is_so_for_both_in_the_same_words(tool, tmp_path, tools, ours):
+    for name in "abc":
+        (tmp_path / name).mkdir()
+    folder, by_tool, by_python = shared(tool, tmp_path / "a")
+    by_python(**ours, chunk=10, part="1/3")
+    made = {path.name: path.read_bytes() for path in folder.iterdir()}
+    code, tools_words = by_tool()
+    with pytest.raises(saltus.SaltusError, match="holds another sweep") as refused:
+        by_python()
+    assert code == 2 and str(refused.value) in tools_words, tools_words
+    assert {path.name: path.read_bytes() for path in folder.iterdir()} == made
+    assert by_tool(*tools, "--part", "2/3")[0] == 0 and by_python(**ours, part="3/3").missing == []
+    # And one that the tool began.
+    folder, by_tool, by_python = shared(tool, tmp_path / "b")
+    assert by_tool(*tools, "--chunk", "10")[0] == 0 and by_python(**ours).missing == []
+    code, tools_words = by_tool()
+    with pytest.raises(saltus.SaltusError, match="holds another sweep") as refused:
+        by_python()
+    assert code == 2 and str(refused.value) in tools_words, tools_words
+    # A part of it in a folder of another.
+    name = next(folder.glob("part-*")).name
+    (folder / name).replace(tmp_path / "a/rows" / name)
+    _, by_tool, by_python = shared(tool, tmp_path / "c")
+    assert by_tool("--chunk", "10")[0] == 0
+    (tmp_path / "a/rows" / name).replace(tmp_path / "c/rows/part-010.parquet")
+    code, tools_words = by_tool()
+    with pytest.raises(saltus.SaltusError, match="belongs to another sweep") as refused:
+        by_python()
+    assert code == 2 and str(refused.value) in tools_words, tools_words
 
 
 def test_a_folder_is_read_by_others(tmp_path):
@@ -135,7 +259,8 @@ def test_a_folder_is_read_by_others(tmp_path):
     assert polars.read_parquet(tmp_path / "*.parquet").height == rows.runs == 120
     said = json.loads(pyarrow.parquet.read_metadata(tmp_path / "part-000.parquet").metadata[b"saltus"])
     assert said["hash"] == rows.plan["hash"] == saltus.Sweep(tmp_path).plan["hash"]
-    assert said["vary"] == GRID and "restitution" in said["scene"] and said["runs"] == 120
+    assert said["vary"][1] == {"key": "ball.height", "values": GRID["ball.height"]} and said["runs"] == 120
+    assert len(said["vary"][0]["values"]) == 40 and "restitution" in said["scene"]
 
 
 def test_each_of_several_machines_makes_its_share(tmp_path):
@@ -185,7 +310,7 @@ def test_a_design_has_a_row_for_each_run(tmp_path):
     for k in np.flatnonzero(~refused)[:5]:
         ball = saltus.simulate(restitution=values[k, 0], ball={"height": values[k, 1]})
         assert frame["first_impact_s"][k] == ball.impacts["t"][0]
-    with pytest.raises(saltus.SaltusError, match="design is not the same"):
+    with pytest.raises(saltus.SaltusError, match="holds another sweep: its `vary` is"):
         saltus.sweep(DROP, design=values[::-1], keys=keys, into=tmp_path, progress=False)
 
 
@@ -236,8 +361,8 @@ def test_two_writers_of_one_folder_lose_and_double_nothing(tmp_path):
         (lambda into: swept(random=3, seed=-1), ValueError, "a seed of zero or more"),
         (lambda into: swept(columns=["colour"]), ValueError, "'colour' is no column"),
         (lambda into: swept(on=7), TypeError, "do not run on a int"),
-        (lambda into: [swept(into=into), swept(into=into, until=1.0)], saltus.SaltusError, "its until_s is not the same"),
-        (lambda into: [swept(into=into), swept(into=into, vary={"restitution": [0.5]})], saltus.SaltusError, "its vary is not"),
+        (lambda into: [swept(into=into), swept(into=into, until=1.0)], saltus.SaltusError, "its `until_s` is null, here it is 1.0; name another"),
+        (lambda into: [swept(into=into), swept(into=into, vary={"restitution": [0.5]})], saltus.SaltusError, "its `vary` is"),
         (lambda into: [swept(into=into, chunk=9), swept(into=into, chunk=5)], ValueError, "have 9 rows, and not 5"),
         (lambda into: saltus.Sweep(into), saltus.SaltusError, "no folder of a sweep"),
         (lambda into: swept(into=ROOT / "README.md"), OSError, "README"),
@@ -303,7 +428,7 @@ def test_the_first_of_two_plans_stays(tmp_path):
 def test_a_worker_of_another_version_is_refused(monkeypatch):
     # The plan is said to be by another version than that which makes its rows.
     said = saltus._sweep._made
-    other = lambda *task: said(*task[:5], task[5].replace('"saltus": "', '"saltus": "9.'), *task[6:])  # noqa: E731
+    other = lambda *task: said(*task[:5], task[5].replace('"saltus":"', '"saltus":"9.'), *task[6:])  # noqa: E731
     monkeypatch.setattr(saltus._sweep, "_made", other)
     with pytest.raises(saltus.SaltusError, match="a worker has saltus"):
         swept()

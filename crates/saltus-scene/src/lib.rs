@@ -111,6 +111,7 @@ mod floor;
 mod kinds;
 mod motion;
 mod number;
+mod parts;
 pub mod plan;
 mod read;
 mod report;

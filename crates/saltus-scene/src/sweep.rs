@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 
 pub use crate::cell::{Cell, Cells};
 pub use crate::column::{Column, RowFormat};
+pub use crate::parts::{Identity, KEY, PLAN, difference, pace, part, parts};
 use crate::plan::{Moment, Outcome};
 use crate::vary::{Value, Variation, Vary, refused};
 use crate::{Error, Run, Scene, Template};
@@ -101,6 +102,16 @@ impl<'a> Sweep<'a> {
     #[must_use]
     pub const fn vary(&self) -> &Vary {
         self.vary
+    }
+
+    /// The settings that go before those of the scene.
+    pub(crate) const fn end(&self) -> Run {
+        self.end
+    }
+
+    /// The text of the scene.
+    pub(crate) const fn scene(&self) -> &str {
+        self.template.text()
     }
 
     /// The scene of the first run.

@@ -54,6 +54,11 @@ impl<'a> Template<'a> {
         Ok(Self { name: name.to_owned(), bytes, text, table, keys: keys.to_vec() })
     }
 
+    /// The text of the file.
+    pub(crate) const fn text(&self) -> &str {
+        self.text
+    }
+
     /// The scene with `values`, one for each key, in the order of the keys; a key without a value
     /// is as in the file. The settings in `run` go before those of the file.
     ///

@@ -36,11 +36,12 @@ pub(crate) fn run(args: &SweepArgs, quiet: bool) -> Result<ExitCode, Error> {
         say(quiet, &note);
     }
     let runs = sweep.runs();
-    let (whose, pool) = (whose(args, &toml, &sweep, &vary, format), pool(args)?);
+    let pool = pool(args)?;
     if let Some(folder) = &args.into {
-        return pool.install(|| parts::run(args, folder, &sweep, &whose, quiet));
+        return pool.install(|| parts::run(args, folder, &sweep, quiet));
     }
     check_plot(args, &sweep)?;
+    let whose = whose(args, &toml, &sweep, &vary, format);
     let (mut table, done) = Table::open(args, &sweep, &whose)?;
     if done > 0 {
         say(

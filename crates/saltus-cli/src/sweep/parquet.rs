@@ -13,10 +13,7 @@ use parquet::file::reader::FileReader;
 use parquet::file::serialized_reader::SerializedFileReader;
 use parquet::file::writer::{SerializedColumnWriter, SerializedFileWriter};
 use parquet::schema::types::Type;
-use saltus_scene::sweep::Cells;
-
-/// The key of the metadata under which a file has the plan of its sweep.
-const KEY: &str = "saltus";
+use saltus_scene::sweep::{Cells, KEY};
 
 /// Columns as a file with the identity of the sweep.
 pub(super) fn written(headers: &[String], columns: &[Cells], plan: &str) -> Result<Vec<u8>> {

@@ -1,45 +1,27 @@
 //! The folder of a sweep: parts of Parquet, each whole or absent, that several may write.
 //!
 //! `_sweep.json` says whose they are and how many rows each has; whoever begins the folder first
-//! says so for all. The package for Python has the same layout, and reads both.
+//! says so for all. The package for Python goes on with what the tool began, and the other way
+//! round.
 
 use std::fs;
 use std::io::{self, Write};
 use std::ops::{ControlFlow, Range};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::time::{Duration, Instant};
 
-use saltus_scene::sweep::{Cell, Cells, Column, Sweep};
+use saltus_scene::sweep::{Cell, Cells, Column, Identity, PLAN, Sweep, difference, pace, part, parts};
 use serde_json::{Value, json};
-use sha2::{Digest, Sha256};
 
 use super::args::{Share, Sweep as Args};
-use super::{parquet, table};
+use super::parquet;
 use crate::error::Error;
 use crate::output::{builder, say};
 use crate::progress::Progress;
 
-/// Readers of Parquet pass over names that begin so.
-const PLAN: &str = "_sweep.json";
-/// The work of one core in a part: no more is lost where a sweep is killed.
-const SPELL: Duration = Duration::from_millis(500);
-/// The part of that work from which the time of a row is estimated.
-const LOOK: Duration = Duration::from_millis(50);
-/// Multiples of (√5 - 1)/2, less whole numbers, come near every place soon.
-const GOLDEN: f64 = 0.618_033_988_749_894_9;
-/// The most rows of a part: a few megabytes.
-const LONGEST: f64 = 50_000.0;
-
 /// Makes the parts that are missing.
-pub(super) fn run(
-    args: &Args,
-    folder: &Path,
-    sweep: &Sweep<'_>,
-    whose: &Value,
-    quiet: bool,
-) -> Result<ExitCode, Error> {
-    let parts = Parts::open(folder, sweep, whose, args.chunk)?;
+pub(super) fn run(args: &Args, folder: &Path, sweep: &Sweep<'_>, quiet: bool) -> Result<ExitCode, Error> {
+    let parts = Parts::open(folder, sweep, args.chunk)?;
     let Share { k, of } = args.part.unwrap_or(Share { k: 1, of: 1 });
     let mut progress =
         Progress::new(parts.all().skip(k - 1).step_by(of).map(|part| part.end - part.start).sum(), quiet);
@@ -93,23 +75,18 @@ fn made(sweep: &Sweep<'_>, part: Range<u64>, mut nothing: impl FnMut(u64, &str))
 /// A folder of parts, and its identity.
 struct Parts<'a> {
     folder: &'a Path,
-    /// The identity that each part bears.
-    said: String,
-    hash: String,
+    identity: Identity,
     runs: u64,
     chunk: u64,
 }
 
 impl<'a> Parts<'a> {
     /// Begins the folder, or goes on with it.
-    fn open(folder: &'a Path, sweep: &Sweep<'_>, whose: &Value, chunk: Option<u64>) -> Result<Self, Error> {
+    fn open(folder: &'a Path, sweep: &Sweep<'_>, chunk: Option<u64>) -> Result<Self, Error> {
         let fail = |error: io::Error| Error::writing(folder, &error);
         fs::create_dir_all(folder).map_err(fail)?;
         let (plan, shown) = (folder.join(PLAN), folder.display());
-        let (mut whose, text) = (whose.clone(), whose.to_string());
-        let hash: String = Sha256::digest(&text).iter().map(|byte| format!("{byte:02x}")).collect();
-        whose["hash"] = json!(hash);
-        let said = whose.to_string();
+        let identity = Identity::of(sweep).map_err(Error::new)?;
         if !plan.exists() {
             // Parts come after their plan: rows of another layout would stand beside those to come.
             let parts = fs::read_dir(folder).map_err(fail)?.flatten().any(|file| is_part(&file.file_name()));
@@ -118,19 +95,19 @@ impl<'a> Parts<'a> {
                     "'{shown}' has parts and no {PLAN}: it is not known whose; name another folder"
                 )));
             }
-            whose["chunk"] = json!(chunk.unwrap_or_else(|| pace(sweep)));
-            let text = serde_json::to_string_pretty(&whose).map_err(Error::new)?;
+            let mut whole: Value = serde_json::from_str(identity.said()).map_err(Error::new)?;
+            whole["chunk"] = json!(chunk.unwrap_or_else(|| pace(sweep)));
+            let text = serde_json::to_string_pretty(&whole).map_err(Error::new)?;
             // Of several that begin the folder the first wins, and all go by it.
             match beside(folder, PLAN, text.as_bytes()).map_err(fail)?.persist_noclobber(&plan) {
                 Err(error) if error.error.kind() != io::ErrorKind::AlreadyExists => return Err(fail(error.error)),
                 _ => {}
             }
         }
-        let text = fs::read(&plan).map_err(|error| Error::reading(&plan, &error))?;
-        let found: Value = serde_json::from_slice(&text)
+        let text = fs::read_to_string(&plan).map_err(|error| Error::reading(&plan, &error))?;
+        let found: Value = serde_json::from_str(&text)
             .map_err(|error| Error::new(format!("'{}' is not as it was written: {error}", plan.display())))?;
-        if found["hash"] != json!(hash) {
-            let how = table::difference(&whose, &found).unwrap_or_else(|| "it was begun in Python".to_owned());
+        if let Some(how) = difference(identity.said(), &text) {
             return Err(Error::new(format!("'{shown}' holds another sweep: {how}; name another folder")));
         }
         let rows = found["chunk"].as_u64().filter(|rows| *rows > 0);
@@ -139,27 +116,24 @@ impl<'a> Parts<'a> {
             Some(chunk) if chunk != rows => {
                 Err(Error::new(format!("the parts in '{shown}' have {rows} rows, and not {chunk}")))
             }
-            _ => Ok(Self { folder, said, hash, runs: sweep.runs(), chunk: rows }),
+            _ => Ok(Self { folder, identity, runs: sweep.runs(), chunk: rows }),
         }
     }
 
     /// The runs of each part.
-    fn all(&self) -> impl Iterator<Item = Range<u64>> + use<'_> {
-        let start = (0..self.runs.div_ceil(self.chunk)).map(|n| n * self.chunk);
-        start.map(|start| start..start.saturating_add(self.chunk).min(self.runs))
+    fn all(&self) -> impl Iterator<Item = Range<u64>> + use<> {
+        parts(self.runs, self.chunk)
     }
 
-    fn path(&self, part: &Range<u64>) -> PathBuf {
-        let width = self.runs.to_string().len();
-        self.folder.join(format!("part-{:0width$}.parquet", part.start))
+    fn path(&self, rows: &Range<u64>) -> PathBuf {
+        self.folder.join(part(rows.start, self.runs))
     }
 
     /// Whether a part is there and whole; that of another sweep is refused.
     fn has(&self, part: &Range<u64>) -> Result<bool, Error> {
         let path = self.path(part);
         let Some((said, rows)) = parquet::read(&path) else { return Ok(false) };
-        let said: Value = serde_json::from_str(&said).unwrap_or_default();
-        if said["hash"] != json!(self.hash) {
+        if !self.identity.is_of(&said) {
             return Err(Error::new(format!("'{}' belongs to another sweep: name another folder", path.display())));
         }
         Ok(rows == part.end - part.start)
@@ -168,7 +142,7 @@ impl<'a> Parts<'a> {
     /// Writes a part under another name, and then gives it its own at once.
     fn put(&self, part: &Range<u64>, headers: &[String], columns: &[Cells]) -> Result<(), Error> {
         let path = self.path(part);
-        let bytes = parquet::written(headers, columns, &self.said).map_err(Error::new)?;
+        let bytes = parquet::written(headers, columns, self.identity.said()).map_err(Error::new)?;
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let written = beside(self.folder, &name, &bytes);
         match written.and_then(|file| file.persist(&path).map_err(|error| error.error)) {
@@ -200,20 +174,4 @@ fn beside(folder: &Path, name: &str, bytes: &[u8]) -> io::Result<tempfile::Named
     file.write_all(bytes)?;
     file.as_file().sync_all()?;
     Ok(file)
-}
-
-/// How many rows are a part, as long as rows take here, at places all over the sweep.
-fn pace(sweep: &Sweep<'_>) -> u64 {
-    let (runs, mut count, mut place) = (sweep.runs(), 1, 0.0_f64);
-    loop {
-        place = (place + GOLDEN).fract();
-        let start = (place * (runs - count + 1) as f64) as u64;
-        let begin = Instant::now();
-        (start..start + count).for_each(|run| drop(sweep.cells(run)));
-        let took = begin.elapsed();
-        if took > LOOK || 2 * count > runs {
-            return (count as f64 * SPELL.as_secs_f64() / took.as_secs_f64()).clamp(1.0, LONGEST) as u64;
-        }
-        count *= 2;
-    }
 }

@@ -8,7 +8,7 @@ use std::io::{self, BufRead, BufReader, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use saltus_scene::sweep::{Row, Sweep};
+use saltus_scene::sweep::{Row, Sweep, difference};
 use serde_json::Value;
 
 use super::SweepArgs;
@@ -146,30 +146,17 @@ fn lock(file: &File, path: &Path) -> Result<(), Error> {
     }
 }
 
-/// What is compared, what says most first.
-const ORDER: [&str; 10] =
-    ["saltus", "scene", "vary", "random", "seed", "until_s", "most_jumps", "format", "columns", "runs"];
-
-/// What first tells two sweeps apart.
-pub(super) fn difference(whose: &Value, found: &Value) -> Option<String> {
-    let key = ORDER.into_iter().find(|key| whose.get(key) != found.get(key))?;
-    let [here, there] = [whose, found].map(|sweep| sweep.get(key).unwrap_or(&Value::Null));
-    Some(match key {
-        "scene" => "the scene is not the same".to_owned(),
-        key => format!("its `{key}` is {there}, here it is {here}"),
-    })
-}
-
 /// Refuses a file that another sweep began.
 fn same(path: &Path, beside: &Path, whose: &Value) -> Result<(), Error> {
     let unknown = |says: String| {
         let path = path.display();
         Error::new(format!("it is not known which sweep '{path}' belongs to: {says}; --force starts anew"))
     };
-    let text = fs::read(beside).map_err(|error| unknown(format!("cannot read '{}': {error}", beside.display())))?;
-    let found: Value = serde_json::from_slice(&text)
+    let text =
+        fs::read_to_string(beside).map_err(|error| unknown(format!("cannot read '{}': {error}", beside.display())))?;
+    serde_json::from_str::<Value>(&text)
         .map_err(|error| unknown(format!("'{}' is not as it was written: {error}", beside.display())))?;
-    let Some(how) = difference(whose, &found) else { return Ok(()) };
+    let Some(how) = difference(&whose.to_string(), &text) else { return Ok(()) };
     let path = path.display();
     Err(Error::new(format!("'{path}' belongs to another sweep: {how}; name another file, or start anew by --force")))
 }

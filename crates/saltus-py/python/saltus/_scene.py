@@ -74,7 +74,7 @@ class Scene:
         elif isinstance(source, (str, os.PathLike)):
             self.name = os.fspath(source)
             try:
-                self.toml = Path(source).read_text(encoding="utf-8")
+                self.toml = Path(source).read_bytes().decode("utf-8")
             except OSError as error:
                 raise _core.SceneError(f"cannot read '{self.name}': {error.strerror}") from error
             except UnicodeDecodeError as error:

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import hashlib
 import importlib.util
 import json
 import os
 import re
-import time
 import uuid
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
@@ -24,24 +22,11 @@ from ._scene import Scene, Source
 Values = Union[str, Sequence[Any], ArrayLike]
 Kept = Union[str, list[str], NDArray[np.float64]]
 
-PLAN = "_sweep.json"
+PLAN = _core.SWEEP_PLAN
 """What the parts of a folder belong to; readers of Parquet pass over names that begin so."""
 
-KEY = b"saltus"
+KEY = _core.SWEEP_KEY.encode()
 """Under which a part has the plan of its sweep."""
-
-SPELL = 0.5
-"""Seconds of work of one core in a part: what an engine and a disk take for one is a hundredth of it,
-and no more than that is lost where a worker is killed."""
-
-LOOK = 0.05
-"""Seconds of work that tell how long a row takes."""
-
-GOLDEN = 0.5 * (5**0.5 - 1)
-"""Multiples of it, less whole numbers, come near every place soon."""
-
-LONGEST = 50_000
-"""Rows of a part at most: a few megabytes."""
 
 
 def _kept(values: Values, key: str) -> Kept:
@@ -67,35 +52,18 @@ def _listed(values: Kept) -> str | list[Any]:
     return values.tolist() if isinstance(values, np.ndarray) else values
 
 
-def _digest(what: Any) -> str:
-    return hashlib.sha256(json.dumps(what, sort_keys=True, allow_nan=False).encode()).hexdigest()
-
-
 class _Plan:
     """What rows depend on, and how they are made."""
 
     def __init__(self, scene: Scene, vary: dict[str, Kept], design: bool, asked: dict[str, Any]) -> None:
         self.scene, self.vary, self.design, self.asked = scene, vary, design, {**asked, "rows": design}
-        runs, headers = _core.sweep_plan(scene.name, scene.toml.encode(), self.values(0, 0), self.asked)
-        self.runs = len(next(iter(vary.values()))) if design else runs
-        what = {
-            "saltus": _core.__version__,
-            "scene": scene.toml,
-            "design" if design else "vary": self._design() if design else dict(self.values(0, 0)),
-            **asked,
-            "columns": headers,
-            "runs": self.runs,
-        }
-        self.what = {**what, "hash": _digest(what)}
+        self.said = _core.sweep_identity(*self._whole())
+        self.what = json.loads(self.said)
+        self.runs = int(self.what["runs"])
 
-    def _design(self) -> dict[str, str]:
-        """The columns of the design by their hashes, for there may be a million rows."""
-
-        def digest(values: Kept) -> str:
-            bytes = values.astype("<f8").tobytes() if isinstance(values, np.ndarray) else json.dumps(values).encode()
-            return hashlib.sha256(bytes).hexdigest()
-
-        return {key: digest(values) for key, values in self.vary.items()}
+    def _whole(self) -> tuple[str, bytes, list[tuple[str, Any]], dict[str, Any]]:
+        every = [(key, _listed(values)) for key, values in self.vary.items()]
+        return self.scene.name, self.scene.toml.encode(), every, self.asked
 
     def values(self, start: int, stop: int) -> list[tuple[str, str | list[Any]]]:
         """What varies; of a design the first row, which says whether all is well, and some others."""
@@ -104,24 +72,14 @@ class _Plan:
         return [(key, [*_listed(values[:1]), *_listed(values[start:stop])]) for key, values in self.vary.items()]
 
     def pace(self) -> int:
-        """How many rows are a part, as long as rows take here, at places all over the sweep."""
-        count, place = 1, 0.0
-        while True:
-            place = (place + GOLDEN) % 1.0
-            start = int(place * (self.runs - count + 1))
-            _, runs, (name, toml), values, asked, _ = self.task(start, start + count)
-            begin = time.perf_counter()
-            _core.sweep_rows(name, toml, values, asked, runs, False)
-            took = time.perf_counter() - begin
-            if took > LOOK or 2 * count > self.runs:
-                return max(1, min(LONGEST, int(count * SPELL / took)))
-            count *= 2
+        """How many rows are a part, as long as rows take here."""
+        return _core.sweep_pace(*self._whole())
 
     def task(self, start: int, stop: int) -> tuple[Any, ...]:
         """What :func:`_made` makes rows of: not the whole design."""
         runs = (1, 1 + stop - start) if self.design else (start, stop)
         scene = "scene", self.scene.toml.encode()
-        return start, runs, scene, self.values(start, stop), self.asked, json.dumps(self.what)
+        return start, runs, scene, self.values(start, stop), self.asked, self.said
 
 
 def _made(
@@ -202,11 +160,10 @@ class Sweep:
         return f"<saltus.Sweep in {str(self.folder) if self.folder else 'memory'}: {self.runs} runs{left}>"
 
     def _all(self) -> list[tuple[int, int]]:
-        chunk = self.plan["chunk"]
-        return [(start, min(start + chunk, self.runs)) for start in range(0, self.runs, chunk)]
+        return _core.sweep_parts(self.runs, self.plan["chunk"])
 
     def _name(self, start: int) -> str:
-        return f"part-{start:0{len(str(self.runs))}}.parquet"
+        return _core.sweep_part(start, self.runs)
 
     def _source(self, start: int) -> Any:
         if self.folder is not None:
@@ -287,9 +244,8 @@ def _opened(plan: _Plan, into: str | os.PathLike[str] | None, chunk: int | None)
         whole = {**plan.what, "chunk": chunk or plan.pace()}
         _write(folder / PLAN, json.dumps(whole, indent=1).encode(), anew=False)
     sweep = Sweep(folder)
-    if sweep.plan["hash"] != plan.what["hash"]:
-        differs = [key for key in plan.what if sweep.plan.get(key) != plan.what[key]]
-        raise _core.SaltusError(f"'{folder}' holds another sweep: its {differs[0]} is not the same; name another folder")
+    if how := _core.sweep_difference(plan.said, (folder / PLAN).read_text(encoding="utf-8")):
+        raise _core.SaltusError(f"'{folder}' holds another sweep: {how}; name another folder")
     if chunk not in (None, sweep.plan["chunk"]):
         raise ValueError(f"the parts in '{folder}' have {sweep.plan['chunk']} rows, and not {chunk}")
     return sweep

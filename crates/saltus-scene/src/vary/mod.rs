@@ -3,6 +3,7 @@
 mod values;
 
 use values::Draws;
+pub(crate) use values::Said;
 pub use values::{Value, Variation};
 
 use crate::{Error, SceneError};

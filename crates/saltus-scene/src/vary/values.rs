@@ -5,8 +5,15 @@ use std::str::FromStr;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use saltus_bounce::units::Quantity;
+use serde::Serialize;
+use serde_json::Value as Json;
+use sha2::{Digest, Sha256};
 
-use crate::number::{self, number};
+use crate::number::{self, hex, number};
+
+/// So many values stand one by one in a plan; of more there is a hash: a plan stays short enough to
+/// be read, and to stand in the metadata of every part.
+const LISTED: u64 = 1000;
 
 /// A key of the scene, and the values it takes.
 #[derive(Clone, Debug)]
@@ -62,10 +69,39 @@ impl Value {
         self.toml.trim_matches('"')
     }
 
+    /// As it stands in a table.
+    fn json(&self) -> Json {
+        match self.cell.parse::<f64>() {
+            Ok(number) if !self.word => number.into(),
+            _ => self.cell.as_str().into(),
+        }
+    }
+
     fn word(word: &str) -> Self {
         let toml = if matches!(word, "true" | "false") { word.to_owned() } else { format!("\"{word}\"") };
         Self { toml, cell: word.to_owned(), word: true }
     }
+}
+
+/// A variation as values and not as text: those that are one have one serialization.
+#[derive(Serialize)]
+pub(crate) struct Said<'a> {
+    key: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    unit: Option<&'a str>,
+    #[serde(flatten)]
+    which: Which,
+}
+
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Which {
+    /// Numbers, and words as text.
+    Each { values: Vec<Json> },
+    /// So many values, by the SHA-256 of them as such a list.
+    Many { count: u64, sha256: String },
+    /// Drawn from a range.
+    Between { from: f64, to: f64, log: bool },
 }
 
 impl FromStr for Variation {
@@ -234,6 +270,23 @@ impl Variation {
     pub fn unit(&self) -> Option<&str> {
         let (Values::Range { unit, .. } | Values::List { unit, .. }) = &self.values;
         unit.as_deref()
+    }
+
+    /// What its values are, however they are written; of a range either each of them, or the range
+    /// from which they are `drawn`.
+    pub(crate) fn said(&self, drawn: bool) -> Said<'_> {
+        let which = match (&self.values, self.count()) {
+            (Values::Range { from, to, logarithmic, .. }, _) if drawn => {
+                Which::Between { from: *from, to: *to, log: *logarithmic }
+            }
+            (_, Some(count)) if count > LISTED => {
+                let mut all = Sha256::new();
+                (0..count).for_each(|n| all.update(format!("{},", self.value(n).json())));
+                Which::Many { count, sha256: hex(&all.finalize()) }
+            }
+            (_, count) => Which::Each { values: (0..count.unwrap_or(0)).map(|n| self.value(n).json()).collect() },
+        };
+        Said { key: &self.key, unit: self.unit(), which }
     }
 
     /// Value `n` of as many as it takes.
