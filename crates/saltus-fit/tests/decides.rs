@@ -130,6 +130,29 @@ fn what_scatters_as_much_as_it_bounces_is_loud() {
     assert!(!loud(0.025) && loud(0.25));
 }
 
+/// Rebounds that stay where they are whatever the height of release follow no COR: rebounds that
+/// do, or scatter too much to tell, or come from one height, are no such.
+#[test]
+fn rebounds_that_do_not_follow_the_release_are_a_doubt() {
+    let unmoved = |rebound: &dyn Fn(f64, f64) -> f64, heights: [f64; 8]| {
+        let row = |(n, h): (usize, f64)| format!("{h},{:.2}\n", rebound(h, (2.4 * n as f64).sin()));
+        let rows: String = heights.into_iter().enumerate().map(row).collect();
+        let report = fit(&("drop_cm,rebound_cm\n".to_owned() + &rows));
+        let found = found(&report, |k| matches!(k, FindingKind::Unmoved { .. }));
+        assert!(!found || report.verdict() == Verdict::Doubtful, "{report}");
+        found
+    };
+    let apart = [0, 1, 2, 3, 4, 5, 6, 7].map(|n| 80.0 + 20.0 * f64::from(n));
+    let near = [0, 1, 2, 3, 4, 5, 6, 7].map(|n| 150.0 + 0.5 * f64::from(n % 3));
+    for level in [12.0, 30.0, 62.0] {
+        assert!(unmoved(&|_, noise| level + noise, apart), "{level}");
+        assert!(!unmoved(&|_, noise| level + noise, near), "{level}");
+    }
+    for e in [0.4, 0.6, 0.8] {
+        assert!(!unmoved(&|h, noise| e * e * h + noise, apart) && !unmoved(&|h, noise| e * e * h + 8.0 * noise, apart));
+    }
+}
+
 /// Errors so large that one fit in a thousand is as good by chance are said to be too large, and
 /// such that one in a hundred is are not.
 #[test]

@@ -245,6 +245,38 @@ fn a_film_of_two_drops_is_of_both() {
     }
 }
 
+/// What swings, or stands on a spring, bounces nowhere: no such motion is trusted, whatever its
+/// rate, its noise and how fast it dies away.
+#[test]
+fn what_swings_is_not_trusted() {
+    let soft = |report: &Report| report.findings().iter().any(|f| matches!(f.kind, FindingKind::Soft { .. }));
+    let mut smooth = 0;
+    for n in 0..72 {
+        let mut noise = Noise(n);
+        let [period, size, phase] = [0.6 + 1.9 * noise.uniform(), 0.05 + noise.uniform(), 6.0 * noise.uniform()];
+        let dies = if n % 2 == 0 { 0.0 } else { 0.3 * noise.uniform() };
+        let rate = [24.0, 30.0, 60.0, 120.0][n as usize / 3 % 4];
+        let height = |t: f64| {
+            let (angle, left) = (std::f64::consts::TAU * t / period + phase, size * (-dies * t).exp());
+            match n % 3 {
+                // A pendulum, a weight on a spring that dies away about its middle, an arc cut off.
+                0 => left * (0.5 * angle).cos().powi(2),
+                1 => size + left * angle.cos(),
+                _ => left * (0.5 * angle).cos().abs(),
+            }
+        };
+        let rows: Vec<(f64, f64)> =
+            (0..(5.0 * rate) as u32).map(|k| f64::from(k) / rate).map(|t| (t, height(t))).collect();
+        let table =
+            Table::parse("t.csv", csv(&noisy(&rows, &mut noise, 0.005 * size)).as_bytes(), &ReadOptions::default());
+        let Ok(table) = table else { continue };
+        let report = Fit::new().run(&table).unwrap();
+        assert_ne!(report.verdict(), Verdict::Trusted, "{n}: {report}");
+        smooth += u32::from(soft(&report));
+    }
+    assert!(smooth > 10, "{smooth}");
+}
+
 /// What a hand does after the bounces is no flight: it catches the ball on its way up or down,
 /// holds it there, or lifts it.
 #[test]

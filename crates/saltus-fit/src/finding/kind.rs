@@ -152,6 +152,13 @@ pub enum FindingKind {
         readings: Readings,
         part: f64,
     },
+    /// Rebounds that do not follow the heights of release, of which these are the least and the
+    /// greatest.
+    Unmoved {
+        low_m: f64,
+        high_m: f64,
+        rebound_m: f64,
+    },
     OrderDrift {
         first: f64,
         last: f64,
@@ -309,6 +316,11 @@ pub enum FindingKind {
     Rough {
         rms: f64,
         noise: f64,
+    },
+    /// Impacts that last a good part of the fall.
+    Soft {
+        contact_s: f64,
+        fall_s: f64,
     },
     FloorDrifts {
         part_per_second: f64,

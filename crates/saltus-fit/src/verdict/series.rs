@@ -15,6 +15,9 @@ use crate::statistics::{CLEAR, NORMAL, SURELY};
 const LASTS: f64 = 0.01;
 /// A motion that leaves this many times the noise does not follow the samples.
 const ROUGH: f64 = 6.0;
+/// An impact that lasts this part of the fall is none: balls stay on the floor for 5 to 20 ms, and
+/// fall for 100 ms from 5 cm.
+const SOFT: f64 = 0.2;
 /// Gravity that differs from film to film by this factor is that of another scale or clock: a
 /// camera that stands still keeps it to a hundredth or two.
 const MOVED: f64 = 1.05;
@@ -262,7 +265,16 @@ fn varying(judgement: &mut Judgement, pooled: &Pooled) {
 
 fn roughness(judgement: &mut Judgement, series: &Series) {
     let range = |t: &Track| t.course.apexes.iter().map(|a| a.1).fold(0.0, f64::max);
-    let rough = |t: &&Track| t.rms > ROUGH * t.noise && t.rms > 0.01 * range(t);
+    let soft = series.tracks.iter().find_map(|track| {
+        let (contact_s, fall_s) = (track.contact?.value, (2.0 * range(track) / track.gravity.value).sqrt());
+        (contact_s > SOFT * fall_s).then_some(FindingKind::Soft { contact_s, fall_s })
+    });
+    if let Some(soft) = soft {
+        judgement.doubt(soft);
+    }
+    // What is left bends the motion, or may move the COR by more than what may be called one.
+    let follows = |t: &Track| t.rms <= ROUGH * t.noise && t.reach <= LEVEL;
+    let rough = |t: &&Track| !follows(t) && t.rms > 0.01 * range(t);
     if let Some(track) = series.tracks.iter().find(rough) {
         judgement.doubt(FindingKind::Rough { rms: track.rms, noise: track.noise });
     }

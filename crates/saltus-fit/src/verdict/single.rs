@@ -3,13 +3,13 @@
 use super::judgement::{Cor, Judgement, LEVEL, SAME};
 use crate::compare::settings::{differ, differ_beside, drift};
 use crate::evidence::{Evidence, TrialEvidence};
-use crate::finding::{FindingKind, Widening};
+use crate::finding::{Finding, FindingKind, Widening};
 use crate::model::LOSSLESS;
 use crate::quantity::{Readings, Source, Sourced};
 use crate::read::Trial;
 use crate::solve::kind::{Kind, one_kind};
 use crate::solve::one::OneKind;
-use crate::statistics::REJECT;
+use crate::statistics::{REJECT, SURELY};
 
 /// Readings whose scatter is more than this part of the largest of them hardly show a bounce.
 const LOUD: f64 = 0.1;
@@ -36,6 +36,33 @@ fn loudness<M: OneKind>(kind: &Kind<M>, trials: &[Trial]) -> f64 {
     of_bounces.max(kind.sigma.value / largest)
 }
 
+/// Whether rebounds stay where they are though the heights of release differ: they are nearer to
+/// their mean than to any COR, though one COR would move them by more than chance can hide.
+fn unmoved(evidence: &Evidence, cor: f64) -> Option<FindingKind> {
+    let rebound = |trial: &TrialEvidence| match trial.heights[..] {
+        [(0, release, _), (1, rebound, _), ..] => Some((release, rebound)),
+        _ => None,
+    };
+    let pairs: Vec<(f64, f64)> = evidence.trials.iter().filter_map(rebound).collect();
+    let count = pairs.len() as f64;
+    let mean = |of: fn(&(f64, f64)) -> f64| pairs.iter().map(of).sum::<f64>() / count;
+    let (release, rebound_m) = (mean(|pair| pair.0), mean(|pair| pair.1));
+    let sum = |of: &dyn Fn(&(f64, f64)) -> f64| pairs.iter().map(|pair| of(pair).powi(2)).sum::<f64>();
+    let about_mean = sum(&|pair| pair.1 - rebound_m);
+    let about_cor = sum(&|pair| pair.1 - cor * cor * pair.0);
+    // If one COR were right, the two sums would differ by this, with a standard deviation of twice
+    // its root times the error of a rebound.
+    let moves = sum(&|pair| cor * cor * (pair.0 - release));
+    let error = (about_mean / (count - 1.0)).sqrt();
+    let low_m = pairs.iter().map(|pair| pair.0).fold(f64::INFINITY, f64::min);
+    let high_m = pairs.iter().map(|pair| pair.0).fold(0.0, f64::max);
+    (pairs.len() > 2 && about_mean < about_cor && moves.sqrt() > 2.0 * SURELY * error).then_some(FindingKind::Unmoved {
+        low_m,
+        high_m,
+        rebound_m,
+    })
+}
+
 /// The COR of one kind of reading, with what speaks against it; `alone` where heights and times are
 /// not fitted together.
 pub(crate) fn single<M: OneKind>(
@@ -54,7 +81,7 @@ pub(crate) fn single<M: OneKind>(
     if kind.estimate.degrees_of_freedom == Some(0) && alone {
         judgement.doubt(FindingKind::JustEnough { readings });
     }
-    scatter(judgement, kind, &mut cor);
+    scatter(judgement, kind, evidence, &mut cor);
     if cor.value > LOSSLESS {
         judgement.doubt(FindingKind::Lossless { readings });
     }
@@ -64,6 +91,9 @@ pub(crate) fn single<M: OneKind>(
         cor = Cor::within(cor.value, cor.low.min(found.low.1), cor.high.max(found.high.1));
         judgement.widen(Widening::Settings);
         judgement.doubt(FindingKind::AsideDiffers { column, low: found.low, high: found.high, p: found.p });
+    }
+    if let Some(found) = unmoved(evidence, cor.value).filter(|_| readings == Readings::Heights) {
+        judgement.doubt(found);
     }
     let part = loudness(kind, trials);
     if part > LOUD && !differ {
@@ -107,7 +137,7 @@ pub(crate) fn single<M: OneKind>(
 
 /// Whether the readings scatter as their errors say; where they scatter by more, the error of the
 /// COR grows with it.
-fn scatter<M: OneKind>(judgement: &mut Judgement, kind: &Kind<M>, cor: &mut Cor) {
+fn scatter<M: OneKind>(judgement: &mut Judgement, kind: &Kind<M>, evidence: &Evidence, cor: &mut Cor) {
     let (estimate, readings) = (&kind.estimate, M::READINGS);
     let (Some(p), Some(chi_square), Some(degrees_of_freedom)) =
         (estimate.p, estimate.chi_square, estimate.degrees_of_freedom)
@@ -116,6 +146,9 @@ fn scatter<M: OneKind>(judgement: &mut Judgement, kind: &Kind<M>, cor: &mut Cor)
     };
     let times = (chi_square / degrees_of_freedom as f64).sqrt();
     let misfit = FindingKind::Misfit { readings, chi_square, degrees_of_freedom };
+    // Drops of one bounce each whose CORs differ by little have one COR.
+    let single = |trial: &TrialEvidence| matches!(trial.heights[..], [(0, ..), (1, ..)]);
+    let one = evidence.trials.iter().all(single) && kind.separate.iter().all(|(_, shift)| shift.abs() <= LEVEL);
     match (p < REJECT, kind.replicated, kind.scatter) {
         // Drops that differ are named by themselves: reading errors explain every drop alone.
         (true, ..) if kind.spread.is_some() => {}
@@ -125,7 +158,7 @@ fn scatter<M: OneKind>(judgement: &mut Judgement, kind: &Kind<M>, cor: &mut Cor)
         (true, false, Some(scatter)) if scatter * cor.value <= LEVEL => {}
         (true, false, Some(_)) => judgement.doubt(misfit),
         (true, false, None) => {
-            judgement.doubt(misfit);
+            judgement.findings.push(if one { Finding::note(misfit) } else { Finding::doubt(misfit) });
             judgement.note(FindingKind::Widened { times });
             let centre = cor.value;
             (cor.low, cor.high) =

@@ -69,6 +69,13 @@ fn one_kind(kind: &FindingKind) -> Option<String> {
             "the {readings} scatter about the bounces of any one COR by {:.0} % of the largest: hardly a bounce can be made out",
             100.0 * part
         ),
+        FindingKind::Unmoved { low_m, high_m, rebound_m } => format!(
+            "the rebounds do not follow the heights of release: from {} as from {} they are about {}, as where a sensor is stuck or the column is of \
+             something else",
+            length(*low_m),
+            length(*high_m),
+            length(*rebound_m)
+        ),
         _ => return None,
     })
 }
@@ -257,6 +264,9 @@ fn recordings(kind: &FindingKind) -> Option<String> {
         FindingKind::Rough { rms, noise } => {
             format!("the motion does not follow the samples: it leaves {rms:.2e} where they scatter by {noise:.2e}")
         }
+        FindingKind::Soft { contact_s, fall_s } => format!(
+            "the motion turns at the floor within {contact_s:.2} s, where the fall takes {fall_s:.2} s: that is no impact, but what a swing or a spring does"
+        ),
         FindingKind::FloorDrifts { part_per_second } => format!(
             "the floor drifts by {:.1} % of the drop a second, as if the camera turned; the fit allows for it",
             100.0 * part_per_second
