@@ -2,6 +2,8 @@
 
 pub(crate) mod follow;
 
+use std::collections::HashMap;
+
 use follow::{Repair, Run, Step, Way};
 
 use crate::finding::{At, Finding, FindingKind};
@@ -64,6 +66,24 @@ pub(crate) struct Evidence {
     pub(crate) supposed: bool,
 }
 
+/// A top stands out once the ball has come down by this part of the height.
+const TOLD: f64 = 0.01;
+
+/// Gives tops of flights whose contacts are both read the error that they are read with, if none is
+/// stated: a ball that has come down by the part p of its height has flown √p of half its flight.
+fn blur_tops(moments: &mut [(usize, bool, f64, Option<f64>)]) {
+    if moments.iter().all(|moment| !moment.1) {
+        return;
+    }
+    let contacts: HashMap<usize, f64> =
+        moments.iter().filter(|moment| !moment.1).map(|&(flights, _, time, _)| (flights, time)).collect();
+    for (flights, _, _, sigma) in moments.iter_mut().filter(|moment| moment.1) {
+        if let (Some(from), Some(to), None) = (contacts.get(flights), contacts.get(&(*flights + 1)), *sigma) {
+            *sigma = Some(0.5 * (to - from).abs() * TOLD.sqrt());
+        }
+    }
+}
+
 impl Evidence {
     /// Trials that are supposed.
     pub(crate) fn supposed(trials: Vec<TrialEvidence>) -> Self {
@@ -105,6 +125,7 @@ impl Evidence {
                     Event::Sample => {}
                 }
             }
+            blur_tops(&mut found.moments);
             evidence.trials.push(found);
         }
         if repair {
