@@ -39,6 +39,7 @@ fn files() -> Vec<PathBuf> {
                 "read/sequence.rs",
                 "read/heading/inside.rs",
                 "read/programs.rs",
+                "read/title.rs",
                 "sound/onset.rs",
                 "sound/chain.rs",
                 "sound/pulse.rs",

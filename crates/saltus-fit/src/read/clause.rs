@@ -79,11 +79,19 @@ pub(super) fn drop(text: &str) -> Option<DropHeight> {
             let of_drop =
                 |w: &Word| w.is(Atom::Release) || ball(w) && (after.is_empty() || beyond && after.iter().all(onto));
             let said = before.iter().any(of_drop) && before.iter().any(of_height);
-            let whole = before.iter().chain(&after).any(|w| w.is(Atom::Release)) && after.iter().all(plain);
+            // What it fell on may be anything: `onto the garage floor`.
+            let silent = |w: &Word| !turns(w) && !matches!(w.kind, Kind::Number(_));
+            let fell_on = after.iter().all(silent) && after.first().is_some_and(|w| w.is(Atom::Filler));
+            let whole = before.iter().chain(&after).any(|w| w.is(Atom::Release));
+            let whole = whole && (fell_on && beyond || after.iter().all(plain));
             // Whoever dropped it, and whatever for: `we let the ball fall from 1 m`.
             let from = before.iter().rposition(|w| w.is(Atom::Release)).map(|at| &before[at..]);
             let told = whole
-                && from.is_some_and(|words| words.len() > 1 && words.iter().all(plain))
+                // How it was let go is one word: `dropped flat from`.
+                && from.is_some_and(|words| match words {
+                    [_, how, _] => silent(how),
+                    _ => words.len() > 1 && words.iter().all(plain),
+                })
                 && before.last().is_some_and(|w| {
                     let leads = w.is(Atom::Filler) || w.is(Atom::Height);
                     Phrase::From.is(&folded(&w.text)) || leads && beyond && after.is_empty()

@@ -22,9 +22,9 @@ use super::text::{self, text};
 use super::title::{self, Stated};
 use super::vocabulary::{Atom, folded};
 use super::workbook;
-use super::{Event, Metadata, ReadOptions, Reading, Table, assemble, pool, said};
+use super::{Event, Metadata, ReadOptions, Reading, Table, assemble, pool, said, sports};
 use crate::error::TableError;
-use crate::finding::{Doubt, Note};
+use crate::finding::Note;
 use crate::quantity::Ball;
 use crate::statistics::FILMED;
 
@@ -145,12 +145,7 @@ fn joined_up<'a>(
                 let placed = |r: &Reading| r.height.is_some() && r.event != Event::Sample;
                 let placed = !table.metadata.speeds && table.trials.iter().any(|t| t.readings.iter().any(placed));
                 table.doubts.extend(datum.filter(|_| placed).and_then(Datum::doubt));
-                // What the table holds too is read: `dropped from 180 cm` above such a release.
-                let readings = || table.trials.iter().flat_map(|t| &t.readings);
-                let released = |m: &f64| readings().any(|r| r.event == Event::Release && r.height == Some(*m));
-                let length = title.length.as_ref().filter(|(_, _, lengths)| !lengths.iter().all(released));
-                let length = length.filter(|_| !answered && placed);
-                table.doubts.extend(length.map(|(text, line, _)| Doubt::Length { text: text.clone(), line: *line }));
+                table.doubts.extend(title::unmet(title, &table).filter(|_| !answered && placed));
                 parts.push((region.label.clone(), table));
             }
             // A table beside another, of something else.
@@ -249,6 +244,7 @@ fn bounces(region: &mut Region<'_>, options: &ReadOptions, metadata: Metadata) -
     ];
     let frame_rate = metadata.frame_rate.or(any).filter(|rate| *rate <= FILMED);
     let mut table = assemble::table(region, &mut columns, rows, options, Metadata { frame_rate, ..metadata })?;
+    sports::of_one_ball(region, &mut table);
     table.metadata.averaged = averaged;
     table.metadata.ratios = columns.of_ratios();
     table.metadata.speeds = columns.of_speeds();

@@ -96,9 +96,10 @@ impl Value {
 }
 
 /// What a heading says of its column.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) enum Meaning {
     /// Nothing stands there.
+    #[default]
     Empty,
     /// The number of the bounce; `sure` if it says so, and not only that it is a number.
     Number {
@@ -118,7 +119,7 @@ pub(super) enum Meaning {
 }
 
 /// A heading, taken apart.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Heading {
     pub(super) text: String,
     pub(super) unit: Option<Unit>,
@@ -153,22 +154,7 @@ impl Heading {
     fn apart(text: &str) -> Self {
         let (name, plain) = (text.trim(), narrow(&unaddressed(text)));
         let text = plain.trim();
-        let mut heading = Self {
-            text: name.to_owned(),
-            unit: None,
-            spread: None,
-            meaning: Meaning::Empty,
-            unknown: Vec::new(),
-            misspelt: Vec::new(),
-            place: None,
-            cor: false,
-            share: None,
-            energy: None,
-            rate: None,
-            drop: None,
-            atoms: Vec::new(),
-            labels: Vec::new(),
-        };
+        let mut heading = Self { text: name.to_owned(), ..Self::default() };
         // The format of a clock, such as `mm:ss.ms`.
         if inside::of_a_clock(text) {
             return Self::parse("time (s)").called(text);
@@ -189,10 +175,10 @@ impl Heading {
             Some((run, name)) if !name.trim().is_empty() && !run.contains(['(', '[']) => (run.trim(), name),
             _ => ("", text),
         };
-        let (drop, name) = release(name).map_or((None, name.to_owned()), |(drop, rest)| (Some(drop), rest));
-        heading.drop = drop;
-        let (rate, name) = rate(&name).map_or((None, name.clone()), |(rate, rest)| (Some(rate), rest));
-        heading.rate = rate;
+        let mut name = name.to_owned();
+        heading.drop = inside::taken(&mut name, release);
+        heading.rate = inside::taken(&mut name, rate);
+        let condition = inside::taken(&mut name, inside::condition);
         let name = heading.take_spread(&name);
         let bare = heading.take_brackets(&name);
         let bare = heading.take_unit(&bare);
@@ -218,6 +204,10 @@ impl Heading {
                 heading.atoms.extend(atoms);
             }
         }
+        // `rebound_percent`.
+        if heading.unit.is_none() && heading.has(Atom::Percent) && heading.has(Atom::Rebound) {
+            heading.unit = Unit::parse("%");
+        }
         let whole = heading.unit.is_none_or(|unit| unit.scale == Scale::Percent) && heading.unknown.is_empty();
         let percent = heading.unit.is_some();
         heading.share = inside::share(&bare, &words, before, percent).filter(|_| whole);
@@ -232,6 +222,9 @@ impl Heading {
             heading.meaning = heading.interpret(&words, run);
         }
         heading.energy = heading.of_energy(&words, run);
+        if let (Some(condition), Meaning::Value(value)) = (condition, &mut heading.meaning) {
+            value.group = [value.group.as_str(), &condition].join(" ").trim_start().to_owned();
+        }
         heading
     }
 

@@ -10,6 +10,7 @@ use super::heading::{At, DropHeight, Meaning, Role, What};
 use super::phrases::Phrase;
 use super::region::Region;
 use super::rows::{Row, Rows};
+use super::said::shrinks;
 use super::sequence::LEVEL;
 use super::units::Dimension;
 use super::vocabulary::{Atom, folded};
@@ -189,6 +190,7 @@ pub(super) fn layout(
     if !released
         && !counted
         && rowed
+        && !shrinks(region, columns)
         && let Some(error) = misread(region, columns, rows)
     {
         return Err(error);
@@ -219,8 +221,8 @@ pub(super) fn layout(
         return Ok(Layout::Numbered);
     }
     match beside(region, columns, rows) {
-        Some(error) => Err(error),
-        None => Ok(Layout::Listed),
+        Some(error) if !shrinks(region, columns) => Err(error),
+        _ => Ok(Layout::Listed),
     }
 }
 

@@ -39,6 +39,7 @@ mod scales;
 mod sensed;
 mod sequence;
 mod sheet;
+mod sports;
 mod stray;
 mod text;
 mod title;
@@ -335,7 +336,7 @@ impl Table {
     /// Once all trials are together: what must not be counted is taken out, what was read is noted.
     fn checked(mut self) -> Self {
         self.trials.iter_mut().for_each(|trial| trial.readings.shrink_to_fit());
-        pool::spelt(&mut self.trials);
+        self.notes.extend(pool::spelt(&mut self.trials).into_iter().map(Remark::from));
         self.notes.insert(0, Note::Size { rows: self.rows, trials: self.trials.len() }.into());
         check::table(&mut self);
         self

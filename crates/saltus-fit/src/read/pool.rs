@@ -1,7 +1,11 @@
 //! Several tables as one: the runs of a file, the sheets of a workbook, the files of an experiment.
 
+use std::collections::HashMap;
+
 use super::aside::LeftAside;
+use super::grid::shown;
 use super::heading::Heading;
+use super::vocabulary::{MISSPELT, slip};
 use super::written::{rounds_to, step};
 use super::{Event, Metadata, Table, Trial};
 use crate::error::TableError;
@@ -33,20 +37,51 @@ pub(super) fn apart(parts: &mut [(String, Table)]) {
     }
 }
 
-/// Spells names of groups that differ in capitals and blanks alone as the first of them: of rows
-/// that several people type. A letter or two may be a mark, of which `a` and `A` are two.
-pub(super) fn spelt(trials: &mut [Trial]) {
+/// Spells names of groups that differ in capitals, blanks, hyphens and slips of the pen alone as
+/// the first of them: of rows that several people type; and what was read for slips. A letter or
+/// two may be a mark, of which `a` and `A` are two.
+pub(super) fn spelt(trials: &mut [Trial]) -> Vec<Note> {
+    let mut notes = Vec::new();
     let mut known: Vec<(String, String)> = Vec::new();
+    // Each name as it was written, and as it is spelt.
+    let mut written: HashMap<String, String> = HashMap::new();
     for trial in trials.iter_mut().filter(|trial| trial.group.chars().nth(2).is_some()) {
         if known.last().is_some_and(|(_, name)| *name == trial.group) {
             continue;
         }
-        let plain = trial.group.split_whitespace().collect::<Vec<_>>().join(" ").to_lowercase();
-        match known.iter().position(|(other, _)| *other == plain) {
-            Some(n) => trial.group.clone_from(&known[n].1),
-            None => known.push((plain, trial.group.clone())),
+        if let Some(name) = written.get(&trial.group) {
+            trial.group.clone_from(name);
+            continue;
         }
+        let plain = trial.group.replace(['-', '_'], " ").to_lowercase();
+        let plain = plain.split_whitespace().collect::<Vec<_>>().join(" ");
+        let like = |(other, _): &(String, String)| *other == plain || slipped(&plain, other).is_some();
+        let name = match known.iter().position(like) {
+            Some(n) => {
+                notes.extend(slipped(&plain, &known[n].0).map(|(written, meant)| Note::Misspelt {
+                    written: written.to_owned(),
+                    heading: shown(&trial.group),
+                    meant: meant.to_owned(),
+                }));
+                known[n].1.clone()
+            }
+            None => {
+                known.push((plain, trial.group.clone()));
+                trial.group.clone()
+            }
+        };
+        written.insert(trial.group.clone(), name.clone());
+        trial.group = name;
     }
+    notes
+}
+
+/// The word in which a name differs from another one by a slip of the pen, and what was meant.
+fn slipped<'a>(name: &'a str, other: &'a str) -> Option<(&'a str, &'a str)> {
+    let mut unlike = name.split(' ').zip(other.split(' ')).filter(|(one, other)| one != other);
+    let found = unlike.next().filter(|_| name.split(' ').count() == other.split(' ').count())?;
+    let letters = |word: &str| word.chars().all(char::is_alphabetic) && word.chars().count() + 1 >= MISSPELT;
+    (unlike.next().is_none() && letters(found.0) && letters(found.1) && slip(found.0, found.1)).then_some(found)
 }
 
 /// Takes out tables of ratios beside others, and of means of the drops of others: they were worked

@@ -14,6 +14,7 @@ use super::units::{Dimension, Unit};
 use super::vocabulary::Atom;
 use crate::error::TableError;
 use crate::finding::Program;
+use crate::statistics::median;
 
 /// The tables of a text, and what they are.
 pub(super) struct Recognised<'a> {
@@ -32,6 +33,10 @@ impl<'a> From<Vec<Region<'a>>> for Recognised<'a> {
 
 /// A label of a contact spans no more than this, s.
 const LABEL: f64 = 0.2;
+/// So many numbers without a name are those of a film, a second or less of it,
+const FRAMES: usize = 20;
+/// where half of the steps from one to the next are shorter than this part of the way.
+const NEAR: f64 = 0.1;
 
 /// Recognises the tables of a text; `fps` is the frame rate, by an option or a comment.
 pub(super) fn tables<'a>(
@@ -125,6 +130,14 @@ fn numbers(view: View<'_>, row: usize) -> bool {
         view.cell(row, column).is_empty() || measured(view.read(row, column))
     };
     (0..view.width(row)).all(bare)
+}
+
+/// Whether numbers one below the other are places of what moves: many, each near the one before.
+fn a_path(view: View<'_>, column: usize) -> bool {
+    let places: Vec<f64> = (0..view.rows()).filter_map(|row| view.number(row, column)).collect();
+    let (low, high) = places.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(*y), h.max(*y)));
+    let mut steps: Vec<f64> = places.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
+    places.len() >= FRAMES && median(&mut steps).is_some_and(|step| step < NEAR * (high - low))
 }
 
 /// Names given beside the file, above all rows that hold numbers.
@@ -383,7 +396,14 @@ fn side_by_side<'a>(region: &Region<'a>) -> Option<Recognised<'a>> {
             }
             region
         });
-        return Some(Recognised { program: Some(Program::SideBySide), regions: regions.collect(), tracks: false });
+        // Bodies that are followed at once have one clock.
+        let clock = |cell: &String| {
+            let heading = Heading::parse(cell);
+            run(cell).is_empty() && (heading.has(Atom::Frame) || heading.value().is_some_and(|v| v.what == What::Time))
+        };
+        let trial = |run: &String| [Atom::Trial, Atom::Repeat].iter().any(|atom| Heading::parse(run).has(*atom));
+        let tracks = header.iter().any(clock) && !runs.iter().any(trial);
+        return Some(Recognised { program: Some(Program::SideBySide), regions: regions.collect(), tracks });
     }
     let groups = region::repeated(header)?;
     let regions = groups.iter().enumerate().map(|(n, group)| part(format!("run {}", n + 1), &|c| group.contains(&c)));
@@ -426,7 +446,7 @@ fn bare<'a>(view: View<'a>, options: &ReadOptions, fps: Option<f64>) -> Result<R
         whole &= value.fract() == 0.0;
         last = value;
     }
-    if fps.is_none() && !(ascends && !whole && width == 3) {
+    if fps.is_none() && !(ascends && (!whole && width == 3 || width < 4 && a_path(view, width - 1))) {
         return Err(view.error(0, 0, "the table has no header: its first line is numbers").nothing().help(
             "name the columns, such as --header bounce,height_cm or --header time_s,height_m; \
                  for a track of pixels give the frames a second, such as --fps 100",

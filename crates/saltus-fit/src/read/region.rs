@@ -85,10 +85,14 @@ impl<'a> Region<'a> {
     }
 
     /// Whether the cells of a column count something: whole numbers from 0 or 1 on, none of them
-    /// left out.
+    /// left out, beside the names of rows that sum others up, and remarks.
     pub(super) fn counts(&self, column: usize) -> bool {
-        let cells = self.rows.iter().map(|&row| self.cell(row, column)).filter(|cell| !cell.is_empty());
-        let numbers: Option<BTreeSet<usize>> = cells.map(|cell| cell.parse().ok()).collect();
+        let counted = |row: usize| self.cell(row, column).parse::<usize>().ok();
+        let remark = |row: usize| !(0..self.header.len()).any(|n| self.view.is_number(row, n));
+        let named = |row: usize| Heading::parse(self.cell(row, column)).sums_up() || remark(row);
+        let cells = self.rows.iter().copied().filter(|&row| !self.cell(row, column).is_empty());
+        let cells = cells.filter(|&row| counted(row).is_some() || !named(row));
+        let numbers: Option<BTreeSet<usize>> = cells.map(counted).collect();
         numbers.is_some_and(|numbers| {
             let first = numbers.first().copied().unwrap_or(2);
             first < 2 && numbers.iter().enumerate().all(|(n, number)| *number == first + n)

@@ -93,7 +93,7 @@ fn stem(name: &str) -> &str {
 
 /// The words of a table: in headings, titles, remarks, comments, names of rows, of its sheet and of
 /// its file.
-fn texts<'a>(region: &'a Region<'_>) -> impl Iterator<Item = &'a str> {
+pub(super) fn texts<'a>(region: &'a Region<'_>) -> impl Iterator<Item = &'a str> {
     let grid = region.view.grid;
     let numbers = |cell: &str| cell.parse::<f64>().is_ok();
     let cells = (0..grid.rows().min(ROWS)).flat_map(move |row| (0..grid.width(row)).map(move |n| grid.cell(row, n)));
@@ -186,7 +186,27 @@ pub(super) fn unsaid(region: &Region<'_>, columns: &Columns, options: &ReadOptio
     let told = |text: &str| says(text) || ball && hits_floor(text) || fast && met(text);
     let column = open.map(|(_, column, _)| column).or_else(parts).filter(|_| !texts(region).any(told))?;
     let ball = || texts(region).any(|text| is_of_a_ball(text) || Ball::named(text).is_some()) || filed(region);
-    (!(ball() && repeats(region, columns))).then(|| Doubt::Unsaid { column: shown(&column.heading.text) })
+    let bounces = ball() && repeats(region, columns, KEPT) || understood(region) && shrinks(region, columns);
+    (!bounces).then(|| Doubt::Unsaid { column: shown(&column.heading.text) })
+}
+
+/// Whether all that is read are times between which less and less passes, by one factor: nothing
+/// else happens so than contacts of a ball, but what is called otherwise, laps and jumps.
+pub(super) fn shrinks(region: &Region<'_>, columns: &Columns) -> bool {
+    let mut read = columns.values().filter(|(_, _, v)| v.role != Role::Error);
+    let number = |row: usize, n: usize| columns.written(region, row, n).map(|(number, _)| number);
+    let rises = |n: usize| region.rows.windows(2).all(|pair| number(pair[0], n) < number(pair[1], n));
+    let clock = read.all(|(n, _, v)| v.what == What::Time && v.at == At::Row && rises(n));
+    let other = |w: &Word| w.is(Atom::Motion) || w.is(Atom::Loose) && (w.is(Atom::Impact) || w.is(Atom::Rebound));
+    let mut names = columns.columns.iter().filter(|c| c.kind != Of::Aside).flat_map(|c| split(&c.heading.text));
+    clock && !names.any(|word| other(&word)) && repeats(region, columns, LASTING)
+}
+
+/// Whether every word that stands beside the columns is understood.
+fn understood(region: &Region<'_>) -> bool {
+    let titles = region.aside.iter().map(|aside| aside.name.as_str());
+    let words = titles.chain(region.view.grid.comments().map(|(_, text)| text)).flat_map(split);
+    words.take(ROWS).all(|word| !matches!(word.kind, Kind::Unknown))
 }
 
 /// Whether the file is named after a ball, or its sport: `phyphox_golf_3.csv`.
@@ -200,7 +220,7 @@ fn filed(region: &Region<'_>) -> bool {
 /// part of what was before it, of a height or an energy or, one below the other, of a duration, or
 /// of what lies between two times.
 /// Of speeds, and of bodies that collide, the part may be of another law.
-fn repeats(region: &Region<'_>, columns: &Columns) -> bool {
+fn repeats(region: &Region<'_>, columns: &Columns, within: f64) -> bool {
     let collide = |text: &str| split(text).iter().any(|word| word.is(Atom::Impact) && word.is(Atom::Loose));
     let read: Vec<(usize, &Value)> =
         columns.values().filter(|(_, _, v)| v.role == Role::Reading).map(|(n, _, v)| (n, v)).collect();
@@ -210,7 +230,7 @@ fn repeats(region: &Region<'_>, columns: &Columns) -> bool {
         return false;
     }
     if first.is_empty() && others.iter().all(|(_, v)| v.what == What::Interval && matches!(v.at, At::Nth(_))) {
-        return repeats_across(region, columns, &others);
+        return repeats_across(region, columns, &others, within);
     }
     if others.iter().any(|(_, v)| v.at != At::Row || !of_row(v)) {
         return false;
@@ -248,23 +268,23 @@ fn repeats(region: &Region<'_>, columns: &Columns) -> bool {
         _ => return false,
     };
     parts.sort_by(|a, b| a.0.cmp(&b.0));
-    let alike = |group: &[(String, f64)]| keeps(group.iter().map(|(_, part)| *part).collect());
+    let alike = |group: &[(String, f64)]| keeps(group.iter().map(|(_, part)| *part).collect(), within);
     parts.len() >= ALIKE && parts.chunk_by(|a, b| a.0 == b.0).all(alike)
 }
 
 /// The same of flights that stand side by side, one after the other, a drop a row.
-fn repeats_across(region: &Region<'_>, columns: &Columns, flights: &[(usize, &Value)]) -> bool {
+fn repeats_across(region: &Region<'_>, columns: &Columns, flights: &[(usize, &Value)], within: f64) -> bool {
     let number = |row: usize, n: usize| columns.written(region, row, n).map(|(number, _)| number);
     let of_row =
         |row: usize| flights.windows(2).filter_map(move |pair| Some(number(row, pair[1].0)? / number(row, pair[0].0)?));
     let parts: Vec<f64> = region.rows.iter().flat_map(|&row| of_row(row)).collect();
-    parts.len() >= ALIKE && keeps(parts)
+    parts.len() >= ALIKE && keeps(parts, within)
 }
 
 /// Whether all parts are nearly one that a ball keeps.
-fn keeps(mut parts: Vec<f64>) -> bool {
+fn keeps(mut parts: Vec<f64>, within: f64) -> bool {
     let usual = median(&mut parts).unwrap_or_default();
-    BOUNCES.contains(&usual) && parts.iter().all(|part| (part / usual - 1.0).abs() < KEPT)
+    BOUNCES.contains(&usual) && parts.iter().all(|part| (part / usual - 1.0).abs() < within)
 }
 
 /// CORs of balls on floors: where all rows agree on one of these, the ball bounces.
@@ -273,6 +293,10 @@ const BOUNCES: std::ops::Range<f64> = 0.3..0.98;
 /// They agree where each is off by less than this part: drops scatter by a hundredth or two, and
 /// the air takes a few more of a light ball.
 const KEPT: f64 = 0.04;
+
+/// Where no ball is named, times that a program took agree to this part; what grows rarer by chance
+/// does not.
+const LASTING: f64 = 0.03;
 
 /// Fewer rows than these fall alike by chance.
 const ALIKE: usize = 3;

@@ -113,6 +113,16 @@ fn accelerations(readings: &[Reading], stride: usize) -> Vec<f64> {
     points.windows(2 * stride + 1).filter_map(bend).filter(|a| a.is_finite()).collect()
 }
 
+/// Whether the rows are those of one recording out of their order, as packets arrive: put in order,
+/// the times have no gap that a recording could end in.
+fn shuffled(readings: &[Reading]) -> bool {
+    let mut times: Vec<f64> = readings.iter().filter_map(|reading| reading.time).collect();
+    times.sort_unstable_by(f64::total_cmp);
+    let steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let usual = median(&mut steps.clone()).unwrap_or(0.0);
+    steps.iter().all(|step| *step > 0.5 * usual && *step < RECORDING as f64 * usual)
+}
+
 /// Recordings one below the other, parted where a clock starts again.
 fn recordings(trial: Trial, notes: &mut Vec<Remark<Note>>) -> Vec<Trial> {
     let restarts = |pair: &[Reading]| pair[1].time < pair[0].time;
@@ -120,7 +130,7 @@ fn recordings(trial: Trial, notes: &mut Vec<Remark<Note>>) -> Vec<Trial> {
         trial.readings.windows(2).enumerate().filter(|(_, pair)| restarts(pair)).map(|(n, _)| n + 1).collect();
     let ends = starts.iter().copied().chain([trial.readings.len()]);
     let shortest = std::iter::once(0).chain(starts.iter().copied()).zip(ends).map(|(a, b)| b - a).min().unwrap_or(0);
-    if starts.is_empty() || shortest < RECORDING {
+    if starts.is_empty() || shortest < RECORDING || shuffled(&trial.readings) {
         return vec![trial];
     }
     notes.push(Note::Restarts { times: starts.len() }.into());

@@ -1,7 +1,6 @@
 //! What the lines above a table state: a frame rate, the height of release, the unit and the error
 //! of all readings; and lengths that are not used.
 
-use super::Table;
 use super::aside::LeftAside;
 use super::cell::{Cell, spaced};
 use super::clause::{clauses, drop, error, frame_rate, lengths, names_rate, of_clauses, states_length};
@@ -13,7 +12,11 @@ use super::region::Region;
 use super::units::{Dimension, Unit};
 use super::vocabulary::{Atom, ROWS, folded, misspelt};
 use super::words::{Kind, Word, split};
+use super::{Event, Table};
 use crate::finding::{Doubt, Note};
+
+/// Heights of release are read within this part of the one that is stated: a centimetre or two.
+const NOMINAL: f64 = 0.03;
 
 /// What a table's title states, and where.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -188,7 +191,10 @@ pub(super) fn names_no_readings(text: &str) -> bool {
     let bare = named.map(|at| text.replacen(&words[at].text, "", 1));
     let text = bare.as_deref().unwrap_or(text);
     let heading = Heading::parse(text);
-    let exact = |atom: Atom| split(text).iter().any(|word| word.is(atom));
+    // Among words that are not understood a part of something is that of anything: `kept in water`;
+    // and a log is a record.
+    let silent = |word: &Word| word.is(Atom::Note) || word.is(Atom::Ratio) && !heading.unknown.is_empty();
+    let exact = |atom: Atom| split(text).iter().any(|word| word.is(atom) && !silent(word));
     let slip = |atom: Atom| {
         let meant = |word: &Word| misspelt(&folded(&word.text)).is_some_and(|(_, atoms)| atoms.contains(&atom));
         matches!(atom, Atom::Predicted | Atom::Goal) && split(text).iter().any(meant)
@@ -256,6 +262,20 @@ pub(super) fn doubted(region: &Region<'_>, table: &mut Table) {
     let comment = || region.view.grid.comments().take(ROWS).find(|(_, text)| whole(text));
     let comment = || comment().map(|(line, text)| Doubt::Title { text: shown(text.trim()), line });
     table.doubts.extend(title.or_else(comment));
+}
+
+/// The doubt about a length that is stated and that no reading takes in: one of a sentence, but for
+/// the table's own release, and a height of release where those of the table are others.
+pub(super) fn unmet(title: &Stated, table: &Table) -> Option<Doubt> {
+    let own = || table.trials.iter().flat_map(|t| &t.readings).filter(|r| r.event == Event::Release);
+    let own = || own().filter_map(|reading| reading.height);
+    let sentence = title.length.as_ref().filter(|(_, _, lengths)| !lengths.iter().all(|m| own().any(|h| h == *m)));
+    let near = |drop: f64| own().any(|h| (h / drop - 1.0).abs() < NOMINAL);
+    let metres = !table.metadata.ratios && !table.metadata.pixels;
+    let other = |drop: f64| metres && own().next().is_some() && !near(drop);
+    let drop = title.drop.as_ref().filter(|(drop, _)| other(drop.metres()));
+    let sentence = sentence.map(|(text, line, _)| Doubt::Length { text: text.clone(), line: *line });
+    sentence.or_else(|| drop.map(|(drop, line)| Doubt::Length { text: drop.text.clone(), line: *line }))
 }
 
 #[cfg(test)]

@@ -245,7 +245,7 @@ pub(super) fn nearest(word: &str) -> Option<&'static str> {
 pub(super) const ROWS: usize = 200;
 
 /// Words of fewer letters may well be others; one of them may be missing in what is misspelt.
-const MISSPELT: usize = 6;
+pub(super) const MISSPELT: usize = 6;
 
 /// The word that a misspelt one is meant to be: it begins with the same letter, and one letter is
 /// missing, too many, another, or has changed places with its neighbour. `None` where words of
@@ -303,7 +303,7 @@ fn meaning(atoms: &'static [Atom]) -> impl Iterator<Item = &'static Atom> {
 }
 
 /// Whether a slip of one letter makes one word of the other.
-fn slip(a: &str, b: &str) -> bool {
+pub(super) fn slip(a: &str, b: &str) -> bool {
     let (a, b): (Vec<char>, Vec<char>) = (a.chars().collect(), b.chars().collect());
     let head = a.iter().zip(&b).take_while(|(x, y)| x == y).count();
     let (a, b) = (&a[head..], &b[head..]);

@@ -1,9 +1,10 @@
 //! What stands around a text of readings and is no part of it: the marks of a mail that is quoted,
 //! the letters and numbers at the edges of a spreadsheet, the times before the lines of a chat.
 
-use super::cell::{self, Cell};
+use super::cell::{self, Cell, Measured};
 use super::heading::{Heading, What};
 use super::phrases::Phrase;
+use super::units::Dimension;
 use super::vocabulary::Atom;
 use super::words::split;
 
@@ -203,16 +204,35 @@ fn below_name(text: &str, (first, heading): (usize, &str), row: impl Fn(&str) ->
     text.lines().enumerate().map(spelt).collect::<Vec<_>>().join("\n") + "\n"
 }
 
-/// What a device sends, one number of one name a line, `14:03:22.159 -> Distance: 26 cm`, as a
-/// table of that and the time; `None` where a line says something else.
+/// What a device sends, numbers of the same names a line, `14:03:22.159 -> Distance: 26 cm`, as a
+/// table of those and the time; `None` where a line says something else.
+///
+/// The time of a bounce by the clock of the device, `Bounce 1: 8829 ms  level=1000`, is better than
+/// that at which the line came.
 fn sent(text: &str) -> Option<String> {
     let reading = |line: &'_ str| -> Option<(String, String)> {
         let stamp = stamped(line).filter(|stamp| !stamp.chat && exact(stamp.time))?;
-        let (name, number) = stamp.said.split_once([':', '='])?;
-        let Cell::Number(sent) = cell::read(number, false) else { return None };
-        let unit = number.trim().trim_start_matches(|c: char| !c.is_alphabetic());
-        sent.unit?;
-        Some((format!("time,{} ({unit})", name.trim()), format!("{},{}", stamp.time, sent.value)))
+        let parts = stamp.said.split("  ").flat_map(|part| part.split([',', ';', '\t', '|'])).map(str::trim);
+        let part = |part: &str| {
+            let (name, number) = part.split_once([':', '='])?;
+            let Cell::Number(sent) = cell::read(number, false) else { return None };
+            let unit = number.trim().trim_start_matches(|c: char| !c.is_alphabetic());
+            let count = name.trim().trim_end_matches(|c: char| c.is_ascii_digit());
+            Some((count.trim().to_owned(), unit.to_owned(), sent))
+        };
+        let parts: Option<Vec<_>> = parts.filter(|part| !part.is_empty()).map(part).collect();
+        let parts = parts.filter(|parts| parts.first().is_some_and(|(_, _, sent)| sent.unit.is_some()))?;
+        let heading = Heading::parse(&format!("{} ({})", parts[0].0, parts[0].1));
+        let clock = heading.has(Atom::Impact) || heading.has(Atom::Rebound);
+        let clock = clock && parts[0].2.unit.is_some_and(|unit| unit.dimension == Dimension::Time);
+        let cell = |(name, unit, sent): &(String, String, Measured)| match unit.as_str() {
+            "" => (name.clone(), sent.value.to_string()),
+            unit if clock && *name == parts[0].0 => (format!("time of {name} ({unit})"), sent.value.to_string()),
+            unit => (format!("{name} ({unit})"), sent.value.to_string()),
+        };
+        let stamp = (!clock).then(|| ("time".to_owned(), stamp.time.to_owned()));
+        let (names, cells): (Vec<String>, Vec<String>) = stamp.into_iter().chain(parts.iter().map(cell)).unzip();
+        Some((names.join(","), cells.join(",")))
     };
     let first = text.lines().position(|line| stamped(line).is_some())?;
     let (heading, _) = text.lines().nth(first).and_then(reading)?;

@@ -152,7 +152,7 @@ impl Columns {
     pub(super) fn siblings(&mut self, region: &Region<'_>) {
         let without = |text: &str, name: &str| text.replacen(name, "", 1).split_whitespace().collect::<String>();
         let of = |c: &Column| c.value().or_else(|| c.heading.value().filter(|_| c.kind == Kind::Share)).cloned();
-        let named: Vec<Named> = (0..)
+        let mut named: Vec<Named> = (0..)
             .zip(&self.columns)
             .filter(|(_, c)| c.heading.unknown.is_empty())
             .filter_map(|(index, c)| Some((index, c, of(c)?)))
@@ -179,7 +179,8 @@ impl Columns {
         for index in 0..self.columns.len() {
             let heading = &self.columns[index].heading;
             // All of a heading that says nothing else is a name.
-            let whole = heading.value().is_none() && heading.unit.is_none();
+            let plain = |v: &Value| v.what == What::Unsaid && v.at == At::Row && v.role == Role::Reading;
+            let whole = heading.value().is_none_or(plain) && heading.unit.is_none();
             let name = if whole { heading.text.clone() } else { heading.unknown.join(" ") };
             if heading.unknown.is_empty() || !heading.text.contains(&name) {
                 continue;
@@ -188,17 +189,22 @@ impl Columns {
             let same = |one: &&Named| {
                 let of_one = |v: &Value| (v.what, v.at, v.role) == (one.value.what, one.value.at, one.value.role);
                 let units = || region.rows.iter().filter_map(|&row| cell(row, one.index).map(|unit| (row, unit)));
-                let beside = || named.iter().any(|n| n.index.abs_diff(index) == 1);
-                let alike = || units().all(|(row, unit)| cell(row, index) == Some(unit));
-                let bare = || whole && beside() && units().nth(1).is_some() && alike();
-                one.rest == rest && heading.value().map_or_else(bare, of_one)
+                let between = |n: usize| n.min(index) + 1..n.max(index);
+                let next = |n: usize| self.columns[between(n)].iter().all(|c| c.heading.text.is_empty());
+                let beside = || named.iter().any(|n| next(n.index));
+                let own = |row: usize| region.view.is_number(row, index).then(|| cell(row, index));
+                let alike = || units().all(|(row, unit)| own(row).is_none_or(|own| own == Some(unit)));
+                let filled = || 2 * units().filter(|(row, _)| own(*row).is_some()).count() > units().count();
+                let bare = || whole && beside() && units().nth(1).is_some() && alike() && filled();
+                one.rest == rest && heading.value().filter(|_| !whole).map_or_else(bare, of_one)
             };
             if let Some(Named { value, kind, .. }) = named.iter().find(same) {
-                let value = Value { group: name, ..value.clone() };
+                let (value, kind) = (Value { group: name, ..value.clone() }, kind.clone());
                 let column = &mut self.columns[index];
-                column.kind = if *kind == Kind::Share { Kind::Share } else { Kind::Value(value.clone()) };
-                column.heading.meaning = Meaning::Value(value);
+                column.kind = if kind == Kind::Share { Kind::Share } else { Kind::Value(value.clone()) };
+                column.heading.meaning = Meaning::Value(value.clone());
                 column.heading.unknown.clear();
+                named.push(Named { index, rest, value, kind });
             }
         }
     }

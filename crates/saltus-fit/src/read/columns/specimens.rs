@@ -1,12 +1,12 @@
 //! Columns that name what was dropped, or who dropped it: balls that are one kind, and trials;
 //! and trials that only the first of several columns names in full.
 
-use std::collections::HashSet;
+use std::collections::HashMap;
 
 use super::{Columns, Kind};
-use crate::read::heading::{At, Role, Value, What};
+use crate::read::heading::{At, Heading, Role, Value, What};
 use crate::read::region::Region;
-use crate::read::vocabulary::Atom;
+use crate::read::vocabulary::{Atom, ROWS};
 use crate::read::words::split;
 
 /// So many rows are named alike by no chance.
@@ -16,14 +16,30 @@ const SEVERAL: usize = 3;
 /// differs by two hundredths from ball to ball gives 1.09 over ten of them.
 const SAME: f64 = 1.1;
 
+/// What stands before the number or the letter of one of several: `ball` of `ball A`, `B` of `B01`.
+fn stem(cell: &str) -> Option<&str> {
+    if let Some((name, nth)) = cell.rsplit_once(' ') {
+        return (nth.parse::<usize>().is_ok() || nth.len() == 1).then_some(name);
+    }
+    let letters = cell.trim_end_matches(|c: char| c.is_ascii_digit());
+    let code = !letters.is_empty() && letters.len() < cell.len() && letters.chars().all(char::is_uppercase);
+    code.then_some(letters)
+}
+
 impl Columns {
     /// `Sample` above `A` and `B` names what was dropped; above numbers it counts.
     pub(super) fn specimens(&mut self, region: &Region<'_>) {
         for index in 0..self.columns.len() {
             let column = &self.columns[index];
+            if !matches!(column.kind, Kind::Setting | Kind::Trial) {
+                continue;
+            }
             // What stands below the numbers is a remark.
             let read = |row: usize| (0..region.header.len()).any(|n| region.view.is_number(row, n));
-            let rows: Vec<usize> = region.rows.iter().copied().filter(|&row| read(row)).collect();
+            // Of many rows few sum others up.
+            let few = region.rows.len() <= ROWS;
+            let sums = |row: usize| few && Heading::parse(region.cell(row, index)).sums_up();
+            let rows: Vec<usize> = region.rows.iter().copied().filter(|&row| read(row) && !sums(row)).collect();
             let cells = || rows.iter().map(|&row| region.cell(row, index)).filter(|cell| !cell.is_empty());
             let words = |cell: &str| !cell.contains(|c: char| c.is_ascii_digit());
             let named = cells().next().is_some() && cells().all(words);
@@ -34,20 +50,22 @@ impl Columns {
             // A number behind a trial, or a letter or a number behind one name of balls whose drops
             // are level, tells no balls apart: `golf ball trial 1`, `ball A`.
             let counted = || {
+                let named: Vec<&str> = cells().collect();
+                let mut times: HashMap<&str, usize> = HashMap::new();
+                named.iter().for_each(|cell| *times.entry(cell).or_default() += 1);
+                // Of so few readings each that none has a COR of its own that can be believed.
+                let most = times.values().max().map_or(0, |times| times * self.beside());
+                let few = times.len() >= SEVERAL && named.len() == rows.len() && most < SEVERAL;
                 // `1`, `2`, `3` below the name of balls at large.
-                let once = rows.len() >= SEVERAL && cells().count() == rows.len();
-                if once && region.counts(index) && cells().collect::<HashSet<_>>().len() == rows.len() {
-                    return self.one_height(region).then_some(());
+                if !few || region.counts(index) {
+                    return few && self.level(region);
                 }
-                let parts: Option<Vec<(&str, &str)>> = cells().map(|cell| cell.rsplit_once(' ')).collect();
-                let parts = parts.filter(|parts| parts.len() >= SEVERAL && parts.len() == rows.len())?;
-                let apart = parts.iter().map(|(_, nth)| *nth).collect::<HashSet<_>>().len() == parts.len();
-                let short = |nth: &str| nth.parse::<usize>().is_ok() || nth.len() == 1;
-                let alike = parts.iter().all(|(name, nth)| *name == parts[0].0 && short(nth));
-                let trial = || split(parts[0].0).last().is_some_and(|w| w.is(Atom::Trial) || w.is(Atom::Repeat));
-                (apart && alike && (trial() || self.one_height(region))).then_some(())
+                let Some(name) = named.first().and_then(|cell| stem(cell)) else { return false };
+                let alike = named.iter().all(|cell| stem(cell) == Some(name));
+                let trial = split(name).last().is_some_and(|w| w.is(Atom::Trial) || w.is(Atom::Repeat));
+                alike && (trial && times.len() == named.len() || self.level(region))
             };
-            if column.kind == Kind::Setting && counted().is_some() {
+            if column.kind == Kind::Setting && counted() {
                 self.columns[index].kind = Kind::Trial;
                 continue;
             }
@@ -87,12 +105,31 @@ impl Columns {
         }
     }
 
-    /// Whether all heights but those of release are of one column, and level.
-    fn one_height(&self, region: &Region<'_>) -> bool {
-        let read = |v: &Value| v.what == What::Height && v.at != At::Release && v.role == Role::Reading;
-        let mut found = self.values().filter(|(_, _, v)| read(v)).map(|(n, _, _)| n);
-        let (Some(index), None) = (found.next(), found.next()) else { return false };
-        let heights = || region.numbers(index);
-        heights().fold(0.0, f64::max) < SAME * heights().fold(f64::INFINITY, f64::min)
+    /// How many readings of one group a row holds, but those of release.
+    fn beside(&self) -> usize {
+        let read = |v: &Value| v.role == Role::Reading && !matches!(v.at, At::Release | At::Before);
+        let groups: Vec<&str> = self.values().filter(|(_, _, v)| read(v)).map(|(_, _, v)| v.group.as_str()).collect();
+        let alike = |group: &&str| groups.iter().filter(|other| *other == group).count();
+        groups.iter().map(alike).max().unwrap_or(1)
+    }
+
+    /// Whether what stands before bounces is level, and so are rebounds, column by column, each as
+    /// a part of it.
+    fn level(&self, region: &Region<'_>) -> bool {
+        let read = |v: &Value| matches!(v.what, What::Height | What::Speed) && v.role == Role::Reading;
+        let (before, after): (Vec<_>, Vec<_>) =
+            self.values().filter(|(_, _, v)| read(v)).partition(|(_, _, v)| matches!(v.at, At::Release | At::Before));
+        let number = |row: usize, column: usize| region.view.number(row, column);
+        let level = |column: usize, what: What, of: Option<usize>| {
+            let part = |&row: &usize| Some(number(row, column)? / of.map_or(Some(1.0), |n| number(row, n))?);
+            let power = if what == What::Speed { 2 } else { 1 };
+            let parts = region.rows.iter().filter_map(part).map(|part| part.powi(power));
+            let (low, high) = parts.fold((f64::INFINITY, 0.0f64), |(l, h), part| (l.min(part), h.max(part)));
+            high < SAME * low
+        };
+        let from = before.first().map(|(n, _, _)| *n);
+        !after.is_empty()
+            && from.is_none_or(|n| level(n, What::Height, None))
+            && after.iter().all(|(n, _, v)| level(*n, v.what, from))
     }
 }

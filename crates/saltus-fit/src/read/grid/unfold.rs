@@ -86,9 +86,18 @@ impl Grid<'_> {
     pub(super) fn unfold(&mut self) {
         let width = (0..self.rows()).map(|row| self.width(row)).max().unwrap_or(0);
         // Of each column the row of its name, and how many readings its cells hold at most.
-        let parted: Vec<Option<(usize, usize)>> = (0..width).map(|column| self.several(column)).collect();
-        if parted.iter().all(Option::is_none) {
-            return;
+        let mut parted: Vec<Option<(usize, usize)>> = (0..width).map(|column| self.several(column)).collect();
+        let Some((name, count)) = parted.iter().flatten().next().copied() else { return };
+        // So are cells beside them that hold as many, whatever their name.
+        let parts = |row: usize, column: usize| readings(self.cell(row, column), self.thousands());
+        let alike = |column: usize| {
+            let rows = || (name + 1..self.rows()).filter(|&row| !self.cell(row, column).is_empty());
+            let missing = |row: usize| !self.cell(row, column).contains(|c: char| c.is_ascii_digit());
+            let as_many = |row: usize| parts(row, column).is_some_and(|found| found.len() == count);
+            rows().any(as_many) && rows().all(|row| missing(row) || as_many(row))
+        };
+        for (column, parted) in parted.iter_mut().enumerate().filter(|(_, parted)| parted.is_none()) {
+            *parted = alike(column).then_some((name, count));
         }
         let (mut cells, mut ends) = (String::new(), Vec::new());
         let mut rows: Vec<u32> = Vec::new();

@@ -304,6 +304,34 @@ pub(in crate::read) fn is_sign(text: &str) -> bool {
     !word && end > 0 && joined && letters().count() < SIGN
 }
 
+/// What is found in a text and taken out of it.
+pub(super) fn taken<T>(text: &mut String, find: fn(&str) -> Option<(T, String)>) -> Option<T> {
+    let (found, rest) = find(text)?;
+    *text = rest;
+    Some(found)
+}
+
+/// A number of degrees or of a pressure beside other words, which tells their column from others:
+/// `rebound at 23 °C (cm)`; and the text without it.
+pub(super) fn condition(text: &str) -> Option<(String, String)> {
+    let digit = |c: char| c.is_ascii_digit();
+    let number = |c: char| digit(c) || matches!(c, '.' | ',');
+    let begins =
+        |(at, c): &(usize, char)| digit(*c) && !text[..*at].ends_with(|c: char| number(c) || c.is_alphabetic());
+    let found = text.char_indices().filter(begins).find_map(|(at, _)| {
+        let unit = text[at..].trim_start_matches(number).trim_start();
+        let ends = unit.find([' ', '(', '[', ')', ']', ',', ';']).unwrap_or(unit.len());
+        let state = Unit::parse(&unit[..ends]).is_some_and(|unit| unit.scale == Scale::State);
+        let from = text[..at].strip_suffix(['-', '−']).map_or(at, str::len);
+        state.then(|| (from, text.len() - unit.len() + ends))
+    });
+    let (from, to) = found?;
+    let rest = [&text[..from], &text[to..]].concat();
+    let other = |w: &Word| !matches!(w.kind, Kind::Known([Atom::Filler, ..]));
+    let bare = rest.split(['(', '[']).next().unwrap_or_default();
+    split(bare).iter().any(other).then(|| (text[from..to].trim().to_owned(), rest))
+}
+
 /// Whether a text is a number of degrees, of a pressure, of anything but lengths, times and speeds,
 /// and nothing else: `21 °C`.
 pub(super) fn of_a_condition(text: &str) -> bool {

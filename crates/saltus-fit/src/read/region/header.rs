@@ -281,7 +281,16 @@ pub(super) fn both(upper: &[String], lower: &[String]) -> Option<Vec<String>> {
         })
         .collect();
     let merged = (0..width).any(|n| cell(upper, n).is_empty() != cell(lower, n).is_empty());
-    let repeated = (0..width).any(|n| !cell(lower, n).is_empty() && (0..n).any(|m| cell(lower, m) == cell(lower, n)));
+    let again = |n: usize| {
+        let named = cell(lower, n).contains(char::is_alphabetic);
+        let same = move |m: usize| m != n && named && cell(lower, m) == cell(lower, n);
+        (0..width).filter(move |m| same(*m)).collect::<Vec<_>>()
+    };
+    let repeated = (0..width).any(|n| !again(n).is_empty());
+    // Of names that come again, and stand below others each: `ball,ball,floor,floor` above
+    // `x,y,x,y`.
+    let apart = |n: usize| !cell(upper, n).is_empty() && again(n).iter().all(|m| cell(upper, *m) != cell(upper, n));
+    let told = repeated && (0..width).filter(|&n| !again(n).is_empty()).all(apart);
     // `Ball,Golf,,Tennis` above names that come again: of each block what stands above it.
     let above = if repeated { blocks(upper, lower).unwrap_or(above) } else { above };
     let name = |n: usize| match (above[n].as_str(), cell(lower, n)) {
@@ -297,10 +306,11 @@ pub(super) fn both(upper: &[String], lower: &[String]) -> Option<Vec<String>> {
             format!("{lower} {}", &name[at..])
         }
         // `Trial 1` above `Time (s)`, and `Trial 2` above another: runs side by side.
+        (_, lower) if told && again(n).is_empty() => lower,
         (name, lower) if repeated => format!("{name}: {lower}"),
         (name, lower) => spanned(name, &lower),
     };
-    merged.then(|| (0..width).map(name).collect())
+    (merged || told).then(|| (0..width).map(name).collect())
 }
 
 /// Whether a name that is a sign, with the unit of it, `h1 [cm]`, stands above the words that say
