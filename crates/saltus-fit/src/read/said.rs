@@ -13,7 +13,7 @@ use super::phrases::Phrase;
 use super::region::Region;
 use super::units::{Dimension, Scale};
 use super::vocabulary::{Atom, ROWS, folded, misspelt};
-use super::words::{ARTICLE, Kind, Word, pieces, split};
+use super::words::{ARTICLE, Kind, Word, has_word, split};
 use crate::error::TableError;
 use crate::finding::Doubt;
 use crate::quantity::Ball;
@@ -134,7 +134,7 @@ fn turned_round(region: &Region<'_>, columns: &Columns) -> bool {
 /// going down beside those going up, which are lower in every row, of which there are several.
 fn in_and_out(region: &Region<'_>, columns: &Columns) -> bool {
     let named = |phrase: Phrase, at: At| {
-        let names = |c: &Column| pieces(&c.heading.text).iter().any(|word| phrase.is(&folded(word)));
+        let names = |c: &Column| has_word(&c.heading.text, phrase);
         columns.values().find(|(_, c, v)| v.what == What::Speed && v.at == at && names(c)).map(|(n, _, _)| n)
     };
     let met = named(Phrase::Inwards, At::Before).zip(named(Phrase::Outwards, At::After));

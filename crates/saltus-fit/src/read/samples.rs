@@ -10,6 +10,8 @@ use crate::statistics::median;
 /// Shorter runs of ascending times are rows out of order; longer ones are recordings, one below the
 /// other.
 const RECORDING: usize = 5;
+/// Times nearer than this part of the usual step are those of two recordings that went on at once.
+const AT_ONCE: f64 = 0.5;
 /// Rows this far apart are compared to tell how fast the ball falls.
 const STRIDES: [usize; 6] = [2, 3, 5, 8, 13, 21];
 /// They agree how fast if the middle half of the bends lies within this part of their median.
@@ -120,7 +122,7 @@ fn shuffled(readings: &[Reading]) -> bool {
     times.sort_unstable_by(f64::total_cmp);
     let steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let usual = median(&mut steps.clone()).unwrap_or(0.0);
-    steps.iter().all(|step| *step > 0.5 * usual && *step < RECORDING as f64 * usual)
+    steps.iter().all(|step| *step > AT_ONCE * usual && *step < RECORDING as f64 * usual)
 }
 
 /// Recordings one below the other, parted where a clock starts again.

@@ -9,8 +9,7 @@ use super::lasting::{self, Lasting};
 use super::phrases::Phrase;
 use super::region::Region;
 use super::units::{Dimension, Unit};
-use super::vocabulary::folded;
-use super::words::pieces;
+use super::words::has_word;
 use super::{Event, Metadata, ReadOptions, Reading, Table, Trial};
 use crate::elementary::{hypot, ln};
 use crate::finding::Note;
@@ -31,7 +30,7 @@ const LOAD: f64 = 1.5;
 /// Whether a column is called by how much a sensor shows, which in a unit of length would be how
 /// high a ball is.
 pub(super) fn shows(region: &Region<'_>) -> bool {
-    region.header.iter().any(|text| says(text, Phrase::Shown) && Heading::parse(text).unit.is_none())
+    region.header.iter().any(|text| has_word(text, Phrase::Shown) && Heading::parse(text).unit.is_none())
 }
 
 /// The clock of evenly spaced samples.
@@ -58,7 +57,7 @@ pub(super) fn table(region: &Region<'_>, options: &ReadOptions, metadata: Metada
     let headings: Vec<Heading> = region.header.iter().map(|text| Heading::parse(text)).collect();
     let texts = region.aside.iter().map(|aside| aside.name.as_str()).chain([region.view.grid.name]);
     // Light that a ball blocks is none that it hits.
-    if texts.chain(region.header.iter().map(String::as_str)).any(|text| says(text, Phrase::Gate)) {
+    if texts.chain(region.header.iter().map(String::as_str)).any(|text| has_word(text, Phrase::Gate)) {
         return None;
     }
     let clock = (0..headings.len()).find_map(|column| Clock::of(region, options, &headings, column))?;
@@ -88,16 +87,11 @@ pub(super) fn table(region: &Region<'_>, options: &ReadOptions, metadata: Metada
     Some(table)
 }
 
-/// Whether a word of a text is of this kind.
-fn says(text: &str, phrase: Phrase) -> bool {
-    pieces(text).iter().any(|word| phrase.is(&folded(word)))
-}
-
 /// Whether a heading is that of a height, a place or a speed: the ball was filmed.
 fn places(heading: &Heading) -> bool {
     let of = |dimension: Dimension| heading.unit.is_none_or(|unit| unit.dimension == dimension);
     let place = |what: What| match what {
-        What::Height => of(Dimension::Length) && !(heading.unit.is_none() && says(&heading.text, Phrase::Shown)),
+        What::Height => of(Dimension::Length) && !(heading.unit.is_none() && has_word(&heading.text, Phrase::Shown)),
         What::Speed => of(Dimension::Speed),
         _ => false,
     };
@@ -141,7 +135,7 @@ impl Sensor {
     /// The samples of a column, unless it holds what no contact shows in.
     fn of(region: &Region<'_>, heading: &Heading, column: usize, clock: &Clock) -> Option<Self> {
         let other = |unit: Unit| unit.dimension != Dimension::Other;
-        if heading.unit.is_some_and(other) || says(&heading.text, Phrase::Unfelt) {
+        if heading.unit.is_some_and(other) || has_word(&heading.text, Phrase::Unfelt) {
             return None;
         }
         let samples: Option<Vec<f64>> = clock.rows.iter().map(|&row| region.view.number(row, column)).collect();

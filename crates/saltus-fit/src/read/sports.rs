@@ -22,17 +22,18 @@ fn named(text: &str) -> Vec<Ball> {
         let name = words[from..to].iter().map(|w| w.text.as_str()).collect::<Vec<_>>().join(" ");
         let lower = name.to_lowercase();
         let ball = lower.ends_with("ball") || lower.ends_with("balls");
-        Ball::named(lower.strip_suffix('s').filter(|_| ball).unwrap_or(&lower)).filter(|_| ball)
+        Ball::named(lower.strip_suffix('s').unwrap_or(&lower)).filter(|_| ball)
     };
     // The longest name, from each word on: `table tennis ball`.
     let found = |from: usize| {
-        (from + 1..=words.len().min(from + 3)).rev().find_map(|to| spelt(from, to).filter(|_| alone(from, to)))
+        let ends = (from + 1..=words.len().min(from + 3)).rev();
+        ends.filter(|&to| alone(from, to)).find_map(|to| Some((spelt(from, to)?, to)))
     };
-    let mut balls = Vec::new();
-    let mut from = 0;
+    let (mut balls, mut from) = (Vec::new(), 0);
     while from < words.len() {
-        balls.extend(found(from));
-        from += 1 + usize::from(found(from) == Some(Ball::TableTennis));
+        let named = found(from);
+        from = named.map_or(from + 1, |(_, to)| to);
+        balls.extend(named.map(|(ball, _)| ball));
     }
     balls
 }

@@ -295,6 +295,11 @@ pub(super) fn unaddressed(text: &str) -> Cow<'_, str> {
     Cow::Owned(text.split_whitespace().filter(|word| !address(word)).collect::<Vec<_>>().join(" "))
 }
 
+/// Whether a word of a text is of this kind.
+pub(super) fn has_word(text: &str, phrase: Phrase) -> bool {
+    pieces(text).iter().any(|word| phrase.is(&folded(word)))
+}
+
 /// The runs of letters and digits of a text, its signs as words.
 pub(super) fn pieces(text: &str) -> Vec<String> {
     let text = unaddressed(text);

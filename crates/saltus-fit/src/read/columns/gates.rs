@@ -9,7 +9,7 @@ use crate::read::phrases::Phrase;
 use crate::read::region::Region;
 use crate::read::units::{Dimension, Unit};
 use crate::read::vocabulary::{Atom, folded};
-use crate::read::words::pieces;
+use crate::read::words::{has_word, pieces};
 use crate::statistics::median;
 
 /// The words of a heading in plain letters.
@@ -281,10 +281,10 @@ const SHORT: f64 = 0.5;
 
 /// Whether a text names a gate that a ball runs through.
 fn names_gate(text: &str) -> bool {
-    pieces(text).iter().any(|word| Phrase::Gate.is(&folded(word)))
+    has_word(text, Phrase::Gate)
 }
 
 /// Whether a text names a sound.
 fn names_sound(text: &str) -> bool {
-    pieces(text).iter().any(|word| Phrase::Sound.is(&folded(word)))
+    has_word(text, Phrase::Sound)
 }
