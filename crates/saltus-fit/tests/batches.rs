@@ -232,6 +232,46 @@ fn a_film_may_have_no_header() {
     assert!(read(&scattered).unwrap_err().to_string().contains("no header"));
 }
 
+/// In space the height is the coordinate that bends, whichever it is called; bodies that stand
+/// still are none of the ball, whether they are named before the coordinates or lines above them.
+#[test]
+fn the_height_is_the_coordinate_along_which_the_ball_falls() {
+    let rows = film();
+    let still = |n: usize| 0.3 + 1e-3 * off(n);
+    for up in ['y', 'z'] {
+        let place = |n: usize, h: f64| if up == 'z' { (still(n), h) } else { (h, still(n)) };
+        let table = |header: &str, unit: f64, rest: bool| {
+            let row = |(n, (t, h)): (usize, &(f64, f64))| {
+                let (y, z) = place(n, *h);
+                let beside = if rest {
+                    format!(",{:.4},{:.4},{:.4}", 0.1, unit * still(n), unit * still(n + 2))
+                } else {
+                    String::new()
+                };
+                format!("{n},{t:.4},{:.4},{:.4},{:.4}{beside}", unit * (0.1 + 0.2 * t), unit * y, unit * z)
+            };
+            header.to_owned() + &lines(rows.iter().enumerate().map(row))
+        };
+        let near = |text: &str| assert!((trusted(text) - 0.75).abs() < 0.01, "{text}");
+        near(&table("Ball\nframe,t (s),x (m),y (m),z (m)\n", 1.0, false));
+        near(&table("Frame,Time,ball X,ball Y,ball Z,table X,table Y,table Z\n", 1000.0, true));
+        let above = ",Type,Marker,Marker,Marker,Marker,Marker,Marker\n,Name,ball,ball,ball,floor,floor,floor\n";
+        let names = ",,Position,Position,Position,Position,Position,Position\nFrame,Time (Seconds),X,Y,Z,X,Y,Z\n";
+        near(&table(&format!("{above}{names}"), 1.0, true));
+    }
+}
+
+/// One name that spans columns says what all of them hold, whatever each is called.
+#[test]
+fn a_name_above_all_columns_is_of_all() {
+    let row = |n: usize| format!("{},{:.1},{:.1},{:.1}", n + 1, 56.0 + off(n), 52.0 + off(n + 1), 38.0 + off(n + 2));
+    let text = format!(
+        "Do tennis balls go flat?\n,\"Rebound height (cm), all dropped from 100 cm onto lab bench\",,\nTrial,New,1 month,2 years\n{}",
+        lines((0..8).map(row))
+    );
+    assert!(is(&groups(&text), &[("New", 0.748), ("1 month", 0.721), ("2 years", 0.616)]), "{text}");
+}
+
 /// Packets that arrive out of their order are one film; recordings one below the other, whose
 /// clocks start again, are several.
 #[test]
@@ -248,6 +288,20 @@ fn packets_out_of_order_are_one_film() {
     assert_eq!((shuffled.verdict(), shuffled.series().len()), (Verdict::Trusted, 1), "{shuffled}");
     assert!((shuffled.cor().unwrap().value - ordered.cor().unwrap().value).abs() < 1e-4);
     assert_eq!(fit(&text(&[&rows, &rows])).series().len(), 2);
+}
+
+/// A film whose clock or scale is wrong falls as nothing on Earth does, however noisy it is.
+#[test]
+fn a_ball_that_falls_too_fast_is_warned_of() {
+    let heights = |wrong: f64, noise: f64| {
+        let rows = film().into_iter().zip(0..).map(|((t, h), n)| format!("{:.4},{:.4}", t * wrong, h + noise * off(n)));
+        fit(&format!("t (s),y (m)\n{}", lines(rows))).warnings().iter().find(|w| w.contains("are due")).cloned()
+    };
+    for noise in [0.0, 0.004] {
+        assert_eq!(heights(1.0, noise), None, "{noise}");
+        let warning = heights(2.0, noise).expect("a warning");
+        assert!(warning.starts_with("the ball falls with 2."), "{warning}");
+    }
 }
 
 /// Tops between contacts that are both read are read to some frames, where the ball is slow: they

@@ -177,6 +177,7 @@ fn every_remark_comes_back() {
         Note::Encoded { encoding: "UTF-16LE".to_owned() },
         Note::Rate { rate: 240.0, line: Some(3) },
         Note::Rate { rate: 240.0, line: None },
+        Note::Vertical { column: "z (m)".to_owned() },
         Note::Still { tracks: columns() },
         Note::Heard { sounds: 48, contacts: 10, from: 0.0, to: 6.46 },
         Note::Felt { column: column(), pulses: 12, contacts: 8 },
@@ -240,5 +241,5 @@ fn every_remark_comes_back() {
         },
         Warning::MoreStrays { heights: 7 },
     ];
-    assert_eq!((back(notes), back(repairs), back(warnings)), (45, 6, 7));
+    assert_eq!((back(notes), back(repairs), back(warnings)), (46, 6, 7));
 }

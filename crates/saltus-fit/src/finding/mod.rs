@@ -4,6 +4,7 @@
 mod detail;
 mod doubt;
 mod kind;
+mod place;
 mod remark;
 
 use serde::{Deserialize, Serialize};
@@ -11,7 +12,8 @@ use serde::{Deserialize, Serialize};
 pub use detail::{Air, Basis, By, Cause, Gives, Missing, Need, Untried, Widening};
 pub use doubt::Doubt;
 pub use kind::FindingKind;
-pub use remark::{Lines, Named, Note, Pace, Parts, Program, Remark, Repair, Shape, Spot, Warning};
+pub use place::{Lines, Spot};
+pub use remark::{Named, Note, Pace, Parts, Program, Remark, Repair, Shape, Warning};
 
 use crate::word::words;
 

@@ -277,11 +277,11 @@ impl Heading {
             let end = text.find(['(', '[']).unwrap_or(text.len());
             let name = text[..end].trim_end();
             let sign = name.trim_end_matches(|c: char| c.is_ascii_digit());
-            if let (true, "x" | "y" | "X" | "Y") = (sign.len() < name.len(), sign) {
+            if let (true, "x" | "y" | "z" | "X" | "Y" | "Z") = (sign.len() < name.len(), sign) {
                 let letter = sign.chars().next()?;
                 return Some((name[sign.len()..].to_owned(), letter, format!("{letter} {}", &text[end..])));
             }
-            let letter = name.chars().next_back().filter(|c| matches!(c, 'x' | 'y' | 'X' | 'Y'))?;
+            let letter = name.chars().next_back().filter(|c| matches!(c.to_ascii_lowercase(), 'x'..='z'))?;
             let stem = name.strip_suffix(letter)?;
             // What a colon ends is the name of the run.
             let joined = stem.chars().all(char::is_lowercase) && letter.is_lowercase();

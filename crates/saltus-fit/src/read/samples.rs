@@ -1,5 +1,6 @@
 //! A series of heights in time: its order, its gaps and repeats, and which way is up.
 
+use super::aside::{LeftAside, Part, Why};
 use super::region::Region;
 use super::{Event, ReadOptions, Reading, Table, Trial};
 use crate::error::TableError;
@@ -12,6 +13,8 @@ use crate::statistics::median;
 const RECORDING: usize = 5;
 /// Times nearer than this part of the usual step are those of two recordings that went on at once.
 const AT_ONCE: f64 = 0.5;
+/// What moves less than this part of what moves most stands still.
+const HARDLY: f64 = 0.1;
 /// Rows this far apart are compared to tell how fast the ball falls.
 const STRIDES: [usize; 6] = [2, 3, 5, 8, 13, 21];
 /// They agree how fast if the middle half of the bends lies within this part of their median.
@@ -37,11 +40,36 @@ pub(super) fn series(
             .error("no row holds both a time and a height")
             .help("check the columns, or name them by --header"));
     }
+    leave_still(table);
     orient(unscaled, options, table);
     if !unscaled {
         falls(table);
     }
     Ok(())
+}
+
+/// Leaves bodies aside that hardly move while another one does: the floor, a corner of the table.
+fn leave_still(table: &mut Table) {
+    let travel = |group: &str| {
+        let own = table.trials.iter().filter(|trial| trial.group == group).flat_map(|trial| &trial.readings);
+        let ends = own
+            .filter_map(|r| r.height)
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), h| (low.min(h), high.max(h)));
+        ends.1 - ends.0
+    };
+    let groups: Vec<String> = table.groups().into_iter().map(str::to_owned).collect();
+    let most = groups.iter().map(|group| travel(group)).fold(0.0, f64::max);
+    let still: Vec<String> = groups.into_iter().filter(|group| travel(group) < HARDLY * most).collect();
+    if still.is_empty() {
+        return;
+    }
+    table.trials.retain(|trial| !still.contains(&trial.group));
+    table.left_aside.extend(still.iter().map(|name| LeftAside::new(Part::Track, name.as_str(), Why::Still)));
+    // Of the ball that is left alone no name is needed to tell it apart.
+    if table.groups().len() == 1 {
+        table.trials.iter_mut().for_each(|trial| trial.group.clear());
+    }
+    table.notes.push(Note::Still { tracks: still }.into());
 }
 
 /// Heights of which every other is zero are those of the release, the contacts and the tops between

@@ -146,6 +146,32 @@ impl Columns {
         }
     }
 
+    /// Of columns under one name that spans them all it says what they hold, and what stands before
+    /// it names the ball or the surface of each: `1 month, rebound`, `new, rebound`.
+    pub(super) fn spanned(&mut self) {
+        let parts: Vec<Option<(String, String)>> = self
+            .columns
+            .iter()
+            .map(|c| c.heading.text.split_once(", ").map(|(head, words)| (head.to_owned(), words.to_owned())))
+            .collect();
+        let shared = |words: &str| parts.iter().flatten().filter(|(_, other)| other == words).count() > 1;
+        let names = |c: &Column| !c.heading.unknown.is_empty() || c.value().is_some_and(|v| !v.group.is_empty());
+        for (column, part) in self.columns.iter_mut().zip(&parts) {
+            let Some((head, words)) = part.as_ref().filter(|(_, words)| shared(words) && names(column)) else {
+                continue;
+            };
+            let above = Heading::parse(words);
+            let value = above.value().filter(|v| v.role == Role::Reading && v.what != What::Unsaid);
+            if let Some(value) = value.filter(|_| above.unknown.is_empty()) {
+                let value = Value { group: head.clone(), ..value.clone() };
+                column.kind = Kind::Value(value.clone());
+                column.heading.meaning = Meaning::Value(value);
+                column.heading.unit = above.unit;
+                column.heading.unknown.clear();
+            }
+        }
+    }
+
     /// Columns called as two others are but for words that name a ball or a surface in those: they
     /// name one here as well, `Rebound zorb (cm)` beside `Rebound golf (cm)`; and so does a name by
     /// itself beside those, where the cells are numbers as theirs are.

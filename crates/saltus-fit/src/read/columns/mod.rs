@@ -2,6 +2,7 @@
 //! rest.
 
 mod conditions;
+mod coordinates;
 mod energies;
 mod faults;
 mod frames;
@@ -154,6 +155,7 @@ impl Columns {
         found.shares(region);
         found.energies(region);
         found.one_sided();
+        found.spanned();
         found.siblings(region);
         found.lacking(region, released);
         found.not_understood(region)?;
@@ -177,6 +179,7 @@ impl Columns {
     ) -> Result<(), TableError> {
         self.wordy(region);
         self.respelt(region);
+        self.vertical(region);
         self.infer(region, options)?;
         self.signals(region, options);
         self.frames(region, fps, any)?;

@@ -44,6 +44,9 @@ impl Header {
     }
 }
 
+/// The names of bodies stand so many lines above those of their coordinates at most: their kinds,
+/// their codes and what is measured between them.
+const APART: usize = 4;
 /// What a column of numbers adds to the score of a header; a column of names adds one.
 pub(super) const VALUE: usize = 100;
 /// What a column of ratios of heights, or of energies, adds, which are read where nothing else is.
@@ -102,6 +105,12 @@ pub(super) fn headers(view: View<'_>, legend: &Legend, row: usize, end: usize) -
         && let Some(names) = both(&one, &line(units))
     {
         push(names, units + 1);
+    }
+    // What is followed may be named some lines above its coordinates.
+    let last = (row + 1..end.min(row + 1 + APART)).take_while(|&n| names_only(view, n)).last();
+    let last = last.filter(|&last| last > row + 1 && last + 1 < end && tells_apart(&one, &line(last)));
+    if let Some((last, names)) = last.and_then(|last| Some((last, both(&one, &line(last))?))) {
+        push(names, last + 1);
     }
     if below(row + 1)
         && !events(view, row + 1)
@@ -281,16 +290,9 @@ pub(super) fn both(upper: &[String], lower: &[String]) -> Option<Vec<String>> {
         })
         .collect();
     let merged = (0..width).any(|n| cell(upper, n).is_empty() != cell(lower, n).is_empty());
-    let again = |n: usize| {
-        let named = cell(lower, n).contains(char::is_alphabetic);
-        let same = move |m: usize| m != n && named && cell(lower, m) == cell(lower, n);
-        (0..width).filter(move |m| same(*m)).collect::<Vec<_>>()
-    };
-    let repeated = (0..width).any(|n| !again(n).is_empty());
-    // Of names that come again, and stand below others each: `ball,ball,floor,floor` above
-    // `x,y,x,y`.
-    let apart = |n: usize| !cell(upper, n).is_empty() && again(n).iter().all(|m| cell(upper, *m) != cell(upper, n));
-    let told = repeated && (0..width).filter(|&n| !again(n).is_empty()).all(apart);
+    let again = |n: usize| again(lower, n);
+    let repeated = (0..width).any(|n| again(n).next().is_some());
+    let told = tells_apart(upper, lower);
     // `Ball,Golf,,Tennis` above names that come again: of each block what stands above it.
     let above = if repeated { blocks(upper, lower).unwrap_or(above) } else { above };
     let name = |n: usize| match (above[n].as_str(), cell(lower, n)) {
@@ -306,11 +308,25 @@ pub(super) fn both(upper: &[String], lower: &[String]) -> Option<Vec<String>> {
             format!("{lower} {}", &name[at..])
         }
         // `Trial 1` above `Time (s)`, and `Trial 2` above another: runs side by side.
-        (_, lower) if told && again(n).is_empty() => lower,
+        (_, lower) if told && again(n).next().is_none() => lower,
         (name, lower) if repeated => format!("{name}: {lower}"),
         (name, lower) => spanned(name, &lower),
     };
     (merged || told).then(|| (0..width).map(name).collect())
+}
+
+/// The other columns of the same name.
+fn again(names: &[String], n: usize) -> impl Iterator<Item = usize> {
+    let name = names.get(n).filter(|name| name.contains(char::is_alphabetic));
+    (0..names.len()).filter(move |m| *m != n && name.is_some_and(|name| names[*m] == *name))
+}
+
+/// Whether names that come again stand below others each: `ball,ball,floor,floor` above `x,y,x,y`.
+fn tells_apart(upper: &[String], lower: &[String]) -> bool {
+    let above = |n: usize| upper.get(n).filter(|name| !name.is_empty());
+    let mut of_several = (0..lower.len()).filter(|&n| again(lower, n).next().is_some()).peekable();
+    let apart = |n: usize| above(n).is_some() && again(lower, n).all(|m| above(m) != above(n));
+    of_several.peek().is_some() && of_several.all(apart)
 }
 
 /// Whether a name that is a sign, with the unit of it, `h1 [cm]`, stands above the words that say

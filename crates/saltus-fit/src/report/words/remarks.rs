@@ -45,6 +45,9 @@ impl Display for Note {
             Self::Overdriven { part } => {
                 write!(f, "{:.1} % of the samples are as large as can be: record less loud", 100.0 * part)
             }
+            Self::Vertical { column } => {
+                write!(f, "'{column}' is the height: along the others the ball flies straight (choose with --column)")
+            }
             Self::Still { tracks } => {
                 write!(f, "left aside, as it hardly moves: {} (choose with --column)", tracks.join(", "))
             }
