@@ -7,8 +7,8 @@ use crate::compare::{self, Wanted};
 use crate::error::FitError;
 use crate::evidence::Evidence;
 use crate::finding::FindingKind;
-use crate::model::{Contacts, Heights, STANDARD_GRAVITY};
-use crate::quantity::{Ball, CorModel, Loss, Source, Sourced};
+use crate::model::{Contacts, Heights};
+use crate::quantity::{Ball, CorModel, Loss, STANDARD_GRAVITY, Source, Sourced};
 use crate::read::{Reading, Table};
 use crate::report::{Extras, Group, Report};
 use crate::solve::bootstrap::Progress;
@@ -286,7 +286,7 @@ impl Fit {
         }
         let fits = Fits::of(table, &evidence, &known, self.losses.contains(&true))?;
         if !fits.any()
-            && let Some(series) = series::fit(table, !self.no_repair, self.drag.or(self.named.map(Ball::drag)))?
+            && let Some(series) = series::fit(table, !self.no_repair, self.drag_of_films(table))?
         {
             return Ok(self.report_of_recordings(&fits, series));
         }
@@ -300,7 +300,9 @@ impl Fit {
         if let Some(apart) = judgement.findings.iter().find_map(|f| beside(&f.kind)).filter(|_| !self.within) {
             return self.run_with(&apart, progress);
         }
-        self.note_ball(&mut judgement);
+        if let Some(ball) = self.named {
+            judgement.note(FindingKind::BallNamed { ball, air: self.drag.is_some() });
+        }
         if self.bootstrap.is_some() && extras.bootstrap.is_none() {
             judgement.note(FindingKind::NoBootstrap { trials: evidence.trials.len() });
         }
@@ -399,15 +401,21 @@ impl Fit {
         Ok(extras)
     }
 
-    fn note_ball(&self, judgement: &mut verdict::Judgement) {
-        if let Some(ball) = self.named {
-            judgement.note(FindingKind::BallNamed { ball, air: self.drag.is_some() });
-        }
+    /// The drag that is stated, or that of the ball that the table names, 1/m; none where nothing
+    /// shows how fast the ball flew in metres a second: at a rate that stands in for another, and,
+    /// but for what is stated, where gravity does not check the clock.
+    fn drag_of_films(&self, table: &Table) -> Option<f64> {
+        let named = || self.named.map(Ball::drag).filter(|_| table.falls_as_due());
+        self.drag.or_else(named).filter(|_| !table.at_any_rate())
     }
 
     fn report_of_recordings(&self, fits: &Fits<'_>, series: Series) -> Report {
         let (mut judgement, estimates, models) = verdict::of_recordings(fits, &series);
-        self.note_ball(&mut judgement);
+        match (self.drag_of_films(fits.table), self.named) {
+            (Some(_), Some(ball)) => judgement.note(FindingKind::BallNamed { ball, air: true }),
+            (None, _) if self.drag.is_some() || self.named.is_some() => judgement.note(FindingKind::DragNotHeeded),
+            _ => {}
+        }
         if self.model.is_some() {
             judgement.note(FindingKind::ModelNotHeeded);
         }

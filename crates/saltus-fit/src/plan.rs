@@ -6,8 +6,7 @@
 
 use crate::error::FitError;
 use crate::fit::Fit;
-use crate::model::STANDARD_GRAVITY;
-use crate::quantity::Readings;
+use crate::quantity::{Readings, STANDARD_GRAVITY};
 use crate::read::Table;
 use crate::report::{Plan, Planned, Report, Way};
 use crate::statistics::{NORMAL, REPLICATED, student};

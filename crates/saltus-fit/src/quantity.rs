@@ -4,6 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::word::words;
 
+/// Gravity where nobody states it, m/s².
+pub(crate) const STANDARD_GRAVITY: f64 = 9.81;
+
 /// A value with its standard error.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]

@@ -16,38 +16,44 @@ fn page() -> String {
 
 /// The files whose constants decide what is found.
 fn files() -> Vec<PathBuf> {
-    let mut found: Vec<PathBuf> =
-        ["statistics.rs", "model/physics.rs", "model/altered.rs", "solve/outliers.rs", "solve/choice.rs"]
-            .into_iter()
-            .chain([
-                "read/said.rs",
-                "read/words.rs",
-                "read/forms.rs",
-                "read/forms/values.rs",
-                "read/order.rs",
-                "read/vocabulary.rs",
-                "read/lasting.rs",
-                "read/layout.rs",
-                "read/limits.rs",
-                "read/check.rs",
-                "read/grid/grouped.rs",
-                "read/columns/conditions.rs",
-                "read/columns/coordinates.rs",
-                "read/columns/gates.rs",
-                "read/columns/signals.rs",
-                "read/columns/specimens.rs",
-                "read/samples.rs",
-                "read/sensed.rs",
-                "read/sequence.rs",
-                "read/heading/inside.rs",
-                "read/programs.rs",
-                "read/title.rs",
-                "sound/onset.rs",
-                "sound/chain.rs",
-                "sound/pulse.rs",
-            ])
-            .map(|file| root().join(file))
-            .collect();
+    let mut found: Vec<PathBuf> = [
+        "statistics.rs",
+        "quantity.rs",
+        "model/physics.rs",
+        "model/altered.rs",
+        "solve/outliers.rs",
+        "solve/choice.rs",
+    ]
+    .into_iter()
+    .chain([
+        "read/said.rs",
+        "read/words.rs",
+        "read/forms.rs",
+        "read/forms/values.rs",
+        "read/order.rs",
+        "read/vocabulary.rs",
+        "read/lasting.rs",
+        "read/layout.rs",
+        "read/limits.rs",
+        "read/check.rs",
+        "read/grid/grouped.rs",
+        "read/columns/conditions.rs",
+        "read/columns/coordinates.rs",
+        "read/columns/gates.rs",
+        "read/columns/signals.rs",
+        "read/columns/specimens.rs",
+        "read/samples.rs",
+        "read/sensed.rs",
+        "read/sequence.rs",
+        "read/heading/inside.rs",
+        "read/programs.rs",
+        "read/title.rs",
+        "sound/onset.rs",
+        "sound/chain.rs",
+        "sound/pulse.rs",
+    ])
+    .map(|file| root().join(file))
+    .collect();
     for folder in ["evidence", "compare", "verdict"] {
         found.extend(fs::read_dir(root().join(folder)).unwrap().map(|entry| entry.unwrap().path()));
     }

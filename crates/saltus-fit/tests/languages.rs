@@ -77,6 +77,34 @@ const SERIES: [[&str; 3]; 22] = [
     ["Odraz č.", "Výška", "Čas"],
 ];
 
+/// How a time, the distance from a sensor and a position are called.
+const SENSED: [[&str; 3]; 24] = [
+    ["time", "distance", "position"],
+    ["Zeit", "Abstand", "Position"],
+    ["temps", "distance", "position"],
+    ["tiempo", "distancia", "posición"],
+    ["tempo", "distância", "posição"],
+    ["tempo", "distanza", "posizione"],
+    ["tijd", "afstand", "positie"],
+    ["tid", "avstånd", "läge"],
+    ["tid", "afstand", "position"],
+    ["tid", "avstand", "posisjon"],
+    ["aika", "etäisyys", "sijainti"],
+    ["czas", "odległość", "pozycja"],
+    ["čas", "vzdálenost", "poloha"],
+    ["idő", "távolság", "pozíció"],
+    ["zaman", "mesafe", "konum"],
+    ["время", "расстояние", "положение"],
+    ["час", "відстань", "положення"],
+    ["时间", "距离", "位置"],
+    ["時間", "距離", "位置"],
+    ["timp", "distanță", "poziție"],
+    ["χρόνος", "απόσταση", "θέση"],
+    ["vrijeme", "udaljenost", "položaj"],
+    ["waktu", "jarak", "posisi"],
+    ["الزمن", "المسافة", "الموضع"],
+];
+
 /// Headings of every language, and what they are of.
 const HEADINGS: &str = include_str!("tables/headings.tsv");
 
@@ -117,6 +145,27 @@ proptest! {
             h *= e * e;
             text += &if timed { format!("{k},{t:.4}\n") } else { format!("{k},{:.1}\n", 100.0 * h) };
             t += 2.0 * (2.0 * h / 9.81).sqrt();
+        }
+        prop_assert!((cor(&text) - e).abs() < 1e-2, "{}", text);
+    }
+
+    /// What a sensor above a ball, or a film of it, shows in time.
+    #[test]
+    fn a_recording_is_one_in_every_language(language in 0..SENSED.len(), e in 0.6..0.9_f64, above in any::<bool>()) {
+        let [time, distance, position] = SENSED[language];
+        let flights = |n: i32| 2.0 * (2.0 * 1.2 / 9.81_f64).sqrt() * e.powi(n);
+        let height = |t: f64| {
+            let (mut from, mut n) = (0.2 - 0.5 * flights(0), 0);
+            while t > from + flights(n) {
+                (from, n) = (from + flights(n), n + 1);
+            }
+            if t < 0.2 { 1.2 } else { 4.905 * (t - from) * (from + flights(n) - t) }
+        };
+        let rows = (0..110).map(|n| 0.02 * f64::from(n)).map(|t| (t, height(t)));
+        let (name, reads) = if above { (distance, 1.6) } else { (position, 0.0) };
+        let mut text = format!("{time} (s);{name} (m)\n");
+        for (t, h) in rows {
+            text += &format!("{t:.3};{:.4}\n", if above { reads - h } else { h });
         }
         prop_assert!((cor(&text) - e).abs() < 1e-2, "{}", text);
     }

@@ -6,7 +6,7 @@
 use std::fmt::Write as _;
 
 use proptest::prelude::*;
-use saltus_fit::{Fit, ReadOptions, Report, Table, Verdict};
+use saltus_fit::{FindingKind, Fit, ReadOptions, Report, Table, Verdict};
 
 fn fit(text: &str, options: &ReadOptions) -> Report {
     let table = Table::parse("t.csv", text.as_bytes(), options).unwrap_or_else(|error| panic!("{error}\n{text}"));
@@ -56,6 +56,33 @@ proptest! {
         prop_assert!(asked(&text.replace("(px)", "(mm)")).contains("--fps"));
         let falls: String = text.lines().take(8).fold(String::new(), |all, line| all + line + "\n");
         prop_assert!(asked(&falls).contains("--fps"));
+    }
+
+    /// The drag of a ball bends flights by how fast they are in metres a second. Where nothing
+    /// shows that, at a rate that stands in for another or by a clock that gravity does not check,
+    /// the COR is the same whichever ball is named.
+    #[test]
+    fn a_clock_that_nothing_checks_takes_no_air_out(e in 0.6f64..0.85, per in 0.03f64..0.06, slow in 1.0f64..8.0) {
+        let text = film(e, per);
+        let timed = |unit: &str| {
+            let row = |line: &str| {
+                let (frame, y) = line.split_once(',').unwrap();
+                let y: f64 = y.parse().unwrap();
+                let y = if unit == "m" { (950.0 - y) * 1e-3 } else { y };
+                format!("{:.4},{y}\n", slow * frame.parse::<f64>().unwrap() / 60.0)
+            };
+            format!("t (s),y ({unit})\n{}", text.lines().skip(1).map(row).collect::<String>())
+        };
+        for ball in ["golf", "table tennis", "basketball"] {
+            for text in [&text, &timed("px")] {
+                let report = fit(&format!("# {ball} ball\n{text}"), &ReadOptions::default());
+                prop_assert!((value(&report) - e).abs() < 0.01, "{} {}", ball, report);
+                prop_assert!(report.findings().iter().any(|f| f.kind == FindingKind::DragNotHeeded), "{}", report);
+            }
+            let open = Table::parse("t.csv", text.as_bytes(), &ReadOptions::default()).unwrap();
+            let stated = Fit::new().drag(0.1).run(&open).unwrap();
+            prop_assert!((value(&stated) - e).abs() < 0.01, "{}", stated);
+        }
     }
 
     /// Heights in pixels beside times have the scale by which they agree, whatever it is.

@@ -282,6 +282,7 @@ pub enum FindingKind {
         gives: Gives,
     },
     ModelNotHeeded,
+    DragNotHeeded,
 
     // Recordings: the motion.
     DragNeeded {

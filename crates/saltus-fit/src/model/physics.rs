@@ -1,8 +1,5 @@
 //! What is known of balls, rulers and places before anything is read.
 
-/// Gravity where nobody states it, m/s².
-pub(crate) const STANDARD_GRAVITY: f64 = 9.81;
-
 /// The most drag of an ordinary ball, 1/m: k = ρ `c_d` A/2m of a basketball is 0.022, of a tennis
 /// ball 0.020, a squash ball 0.016, a golf ball 0.008, one of steel 0.001.
 pub(crate) const ORDINARY_DRAG: f64 = 0.022;

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use super::aside::{LeftAside, Part, Why};
 use super::cell::{self, Cell};
 use super::{Event, Reading, Span, Table, Trial};
-use crate::finding::{Doubt, Note};
+use crate::finding::{Doubt, Note, Warning};
 use crate::quantity::Ball;
 use crate::statistics::median;
 
@@ -22,6 +22,16 @@ impl Table {
             }
         }
         found
+    }
+
+    /// Whether its clock runs at a rate that stands in for one that is not stated.
+    pub(crate) fn at_any_rate(&self) -> bool {
+        self.notes.iter().any(|note| matches!(note.kind, Note::AnyRate { .. }))
+    }
+
+    /// Whether its heights have a scale, and a ball falls by it as gravity has it.
+    pub(crate) fn falls_as_due(&self) -> bool {
+        !self.metadata.pixels && !self.warnings.iter().any(|w| matches!(w.kind, Warning::Gravity { .. }))
     }
 
     /// The trials of one group.

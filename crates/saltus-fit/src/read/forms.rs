@@ -7,6 +7,7 @@ mod counted;
 mod laps;
 mod latex;
 mod noted;
+mod parts;
 mod printed;
 mod sentences;
 mod spans;
@@ -17,6 +18,7 @@ use std::borrow::Cow;
 use std::collections::HashMap;
 
 pub(super) use blocks::bulleted;
+use parts::{Part, arrows, parts};
 pub(super) use printed::{dumped, indexed};
 use values::{LIST, listed_numbers, listed_values, named_list, of_one_unit, risen, titled};
 
@@ -291,50 +293,6 @@ fn measured(line: &str) -> Option<(&str, &str)> {
     let words =
         !chained && found.len() < 3 && name.contains(char::is_alphabetic) && !name.contains([',', ';', '|', '\t']);
     (unit && words).then_some((name, last.number))
-}
-
-/// Marks between one height and the next.
-const ARROWS: [&str; 9] = ["-->", "->", "=>", ">", "→", "⟶", "⇒", "➔", "➜"];
-
-/// Those marks, and words that stand for one.
-fn arrows() -> impl Iterator<Item = &'static str> {
-    ARROWS.into_iter().chain(Phrase::Versus.all().iter().copied())
-}
-
-/// A number of a line with its unit, and the words before it.
-struct Part<'a> {
-    words: &'a str,
-    number: &'a str,
-}
-
-/// The numbers of a line, each with the words before it, and the words behind the last.
-fn parts(line: &str) -> (Vec<Part<'_>>, &str) {
-    let (mut found, mut from, mut at) = (Vec::new(), 0, 0);
-    while let Some(start) = line[at..].find(|c: char| c.is_ascii_digit()).map(|n| at + n) {
-        let digits = |c: char| c.is_ascii_digit() || matches!(c, '.' | ',');
-        let run = line[start..].find(|c: char| !digits(c)).map_or(line.len(), |n| start + n);
-        let end = start + line[start..run].trim_end_matches(['.', ',']).len();
-        at = end;
-        // `h1`, `2nd` are words.
-        let letter = |c: Option<char>| c.is_some_and(|c| c.is_alphabetic() || c == '_');
-        if letter(line[..start].chars().next_back()) {
-            continue;
-        }
-        let blank = line[end..].len() - line[end..].trim_start_matches(' ').len();
-        let spelt = &line[end + blank..];
-        let stop = spelt.find(|c: char| !(c.is_alphabetic() || matches!(c, '%' | '"'))).unwrap_or(spelt.len());
-        // What stands before a sign is a name, `hit 1 t=3885 ms`, and a unit before an arrow.
-        let sign = spelt[stop..].trim_start();
-        let name = sign.starts_with(['=', ':', '_']) && !arrows().any(|arrow| sign.starts_with(arrow));
-        let unit = (stop > 0 && !name && Unit::parse(&spelt[..stop]).is_some()).then(|| end + blank + stop);
-        if unit.is_none() && blank == 0 && letter(spelt.chars().next()) {
-            continue;
-        }
-        let end = unit.unwrap_or(end);
-        found.push(Part { words: line[from..start].trim(), number: &line[start..end] });
-        (from, at) = (end, end);
-    }
-    (found, line[from..].trim())
 }
 
 /// Lines that are the same but for their numbers, `dropped from 1 m, came back to 64 cm`: a row

@@ -394,6 +394,7 @@ fn delimiter<'a>(lines: impl Iterator<Item = &'a str>) -> u8 {
     match [b'\t', b';', b','].into_iter().find(|&mark| separates(&lines, mark)) {
         // Below a name without a comma, a comma that makes a number is no delimiter.
         Some(b',') if decimal_commas(&lines) => b';',
+        Some(b',') if blanks_part(&lines) => b' ',
         Some(mark) => mark,
         None if lines.iter().skip(1).any(|line| line.trim().contains(' ') && line.trim().split(' ').all(number)) => {
             b' '
@@ -431,6 +432,13 @@ fn separates(lines: &[&str], mark: u8) -> bool {
 fn decimal_commas(lines: &[&str]) -> bool {
     let first = lines.iter().position(|line| count(line, b',') > 0);
     first.is_some_and(|at| at > 0 && lines[at].trim().replacen(',', ".", 1).parse::<f64>().is_ok())
+}
+
+/// Whether blanks part numbers with decimal commas in most lines: `0,1 42,11`.
+fn blanks_part(lines: &[&str]) -> bool {
+    let number = |cell: &str| cell.replacen(',', ".", 1).parse::<f64>().is_ok() || cell::clock(cell).is_some();
+    let whole = |line: &&&str| line.trim().contains(' ') && line.contains(',') && line.split_whitespace().all(number);
+    2 * lines.iter().filter(whole).count() > lines.len()
 }
 
 /// How often a mark stands in a line outside of quotes.

@@ -397,16 +397,17 @@ impl Heading {
 
     /// Takes an error at the end out, `height (cm) ± 0.5`.
     fn take_spread(&mut self, text: &str) -> String {
-        let parts = ["±", "+/-"].iter().find_map(|mark| text.rsplit_once(mark));
-        let Some((name, error)) = parts.filter(|(name, _)| !name.trim_end().ends_with(['(', '['])) else {
+        let Some((name, error)) = text.rsplit_once('±').filter(|(name, _)| !name.trim_end().ends_with(['(', '[']))
+        else {
             return text.to_owned();
         };
         let error = error.trim();
-        // `mean ± SD of 5`: what each cell holds, and no number.
+        // `mean ± SD of 5 (cm)`: what each cell holds, and no number.
         let of_cells = |w: &Word| w.is(Atom::Error) || w.is(Atom::Filler) || matches!(w.kind, Kind::Number(_));
-        let words = split(error.trim_end_matches([')', ']']));
+        let (said, unit) = error.split_at(error.find(['(', '[']).unwrap_or(error.len()));
+        let words = split(said.trim_end_matches([')', ']']));
         if words.first().is_some_and(|w| w.is(Atom::Error)) && words.iter().all(of_cells) {
-            return name.trim_end().to_owned();
+            return format!("{} {unit}", name.trim_end()).trim_end().to_owned();
         }
         let digits = error.find(|c: char| !(c.is_ascii_digit() || matches!(c, '.' | ','))).unwrap_or(error.len());
         let spread: Option<f64> = error[..digits].replace(',', ".").parse().ok();
@@ -434,7 +435,7 @@ impl Heading {
             let argument =
                 matches!(inside, "n" | "i" | "k" | "t" | "x") && rest[..open].ends_with(char::is_alphanumeric);
             rest = &rest[open + close + 1..];
-            let error = inside.strip_prefix('±').or(inside.strip_prefix("+/-")).or(inside.strip_prefix("+-"));
+            let error = inside.strip_prefix('±');
             let timed = || split(&left).iter().any(|w| w.is(Atom::Time) || w.is(Atom::Interval));
             // A letter behind a condition is its unit, and names no ball: `Temp (C)`.
             let of_condition = || {

@@ -39,6 +39,7 @@ mod scales;
 mod sensed;
 mod sequence;
 mod sheet;
+mod sizes;
 mod sports;
 mod stray;
 mod text;

@@ -10,7 +10,7 @@ use super::written::{rounds_to, step};
 use super::{Event, Metadata, Table, Trial};
 use crate::error::TableError;
 use crate::finding::{Doubt, Note, Parts, Remark, Warning};
-use crate::quantity::Ball;
+use crate::quantity::{Ball, STANDARD_GRAVITY};
 
 /// Tells files apart whose names are of different balls or surfaces, and recordings from readings
 /// of bounces: they are no one experiment.
@@ -156,9 +156,6 @@ pub(super) fn computed(parts: &mut Vec<(String, Table)>) -> Vec<(String, Table)>
     heights
 }
 
-/// Gravity that programs work heights out with, m/s².
-const GRAVITY: f64 = 9.81;
-
 /// Heights that are worked out differ by less than this part of them from what they follow from.
 const WORKED_OUT: f64 = 0.005;
 
@@ -171,7 +168,8 @@ fn flown(heights: &Trial, times: &Trial) -> bool {
         times.readings.iter().filter(|r| r.event == Event::Contact).filter_map(|r| r.time).collect();
     let timed = heights.readings.iter().any(|r| r.time.is_some()) || times.readings.iter().any(|r| r.height.is_some());
     let flights = contacts.windows(2).map(|pair| pair[1] - pair[0]);
-    let alike = |(flight, height): (f64, &f64)| (GRAVITY * flight * flight / 8.0 / height - 1.0).abs() < WORKED_OUT;
+    let alike =
+        |(flight, height): (f64, &f64)| (STANDARD_GRAVITY * flight * flight / 8.0 / height - 1.0).abs() < WORKED_OUT;
     !timed && apexes.len() > 1 && contacts.len() == apexes.len() + 1 && flights.zip(&apexes).all(alike)
 }
 

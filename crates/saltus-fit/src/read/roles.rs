@@ -223,6 +223,7 @@ impl Columns {
         let counts: Vec<usize> = nth.iter().map(|(count, _)| *count).collect();
         let nth: Vec<usize> = nth.into_iter().map(|(_, n)| n).collect();
         let drop = self.values().find(|(_, _, v)| v.at == At::Release && v.role == Role::Reading);
+        let drop = drop.or_else(|| self.height_beside(&nth));
         // A release that bears the number 0 is of the same count: `h0,h1,h2` are bounces.
         let counted =
             drop.is_some_and(|(_, c, _)| !c.heading.has(Atom::Release) && c.heading.text.contains(['0', '₀']));
@@ -255,6 +256,14 @@ impl Columns {
         }
         self.notes.push(Note::Repeats { columns: names });
         Ok(())
+    }
+
+    /// The one height beside flights, which may be that of the release.
+    fn height_beside(&self, flights: &[usize]) -> Option<(usize, &Column, &Value)> {
+        let of_height = |v: &Value| v.what == What::Height && v.role == Role::Reading && v.group.is_empty();
+        let mut heights = self.values().filter(|(_, _, v)| of_height(v));
+        let one = heights.next().filter(|(_, c, v)| v.at == At::Row && !c.heading.has(Atom::Rebound));
+        one.filter(|_| heights.next().is_none() && flights.iter().all(|&n| self.columns[n].holds(What::Interval)))
     }
 
     /// Columns of one name, nearly as high as one another, beside a height of release or below one

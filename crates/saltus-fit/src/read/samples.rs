@@ -1,11 +1,14 @@
 //! A series of heights in time: its order, its gaps and repeats, and which way is up.
 
+use std::mem;
+
 use super::aside::{LeftAside, Part, Why};
 use super::region::Region;
 use super::{Event, ReadOptions, Reading, Table, Trial};
 use crate::error::TableError;
-use crate::finding::{Note, Pace, Remark, Repair, Warning};
+use crate::finding::{Lines, Note, Pace, Remark, Repair, Warning};
 use crate::orientation::falls_upwards;
+use crate::quantity::STANDARD_GRAVITY;
 use crate::statistics::median;
 
 /// Shorter runs of ascending times are rows out of order; longer ones are recordings, one below the
@@ -13,6 +16,8 @@ use crate::statistics::median;
 const RECORDING: usize = 5;
 /// Times nearer than this part of the usual step are those of two recordings that went on at once.
 const AT_ONCE: f64 = 0.5;
+/// A ball in the middle of a picture is further from its edge than this part of the way across.
+const FAR: f64 = 0.05;
 /// What moves less than this part of what moves most stands still.
 const HARDLY: f64 = 0.1;
 /// Rows this far apart are compared to tell how fast the ball falls.
@@ -28,7 +33,13 @@ pub(super) fn series(
     options: &ReadOptions,
     table: &mut Table,
 ) -> Result<(), TableError> {
-    let trials = std::mem::take(&mut table.trials);
+    let mut trials = mem::take(&mut table.trials);
+    if unscaled {
+        let lost: Vec<u64> = trials.iter_mut().flat_map(take_lost).collect();
+        if !lost.is_empty() {
+            table.repairs.push(Repair::NoPosition { lines: Lines::of(&lost) }.into());
+        }
+    }
     for trial in trials {
         for part in recordings(trial, &mut table.notes) {
             table.trials.push(ordered(region, column, part, &mut table.repairs)?);
@@ -46,6 +57,22 @@ pub(super) fn series(
         falls(table);
     }
     Ok(())
+}
+
+/// Takes the samples out in which a program did not find the ball, and gives their lines: no place
+/// of a picture is negative, but for one number in place of all of these, far from all others.
+fn take_lost(trial: &mut Trial) -> Vec<u64> {
+    let heights = || trial.readings.iter().filter_map(|r| r.height);
+    let found = || heights().filter(|h| *h >= 0.0);
+    let Some(sign) = heights().find(|h| *h < 0.0) else { return Vec::new() };
+    let (least, most) = found().fold((f64::INFINITY, 0.0_f64), |(low, high), h| (low.min(h), high.max(h)));
+    let same = heights().filter(|h| *h < 0.0).all(|h| h.total_cmp(&sign).is_eq());
+    if !same || least < FAR * most || most <= 0.0 {
+        return Vec::new();
+    }
+    let (lost, kept) = mem::take(&mut trial.readings).into_iter().partition(|r| r.height.is_some_and(|h| h < 0.0));
+    trial.readings = kept;
+    Vec::into_iter(lost).map(|r: Reading| r.line).collect()
 }
 
 /// Leaves bodies aside that hardly move while another one does: the floor, a corner of the table.
@@ -102,7 +129,7 @@ pub(super) fn touches(trials: &mut [Trial]) -> bool {
 /// A series in metres and seconds says how fast balls fall; a wrong unit, scale or frame rate says
 /// so too.
 fn falls(table: &mut Table) {
-    let gravity = table.metadata.gravity.unwrap_or(9.81);
+    let gravity = table.metadata.gravity.unwrap_or(STANDARD_GRAVITY);
     let agreed = |stride: &usize| {
         let found = table.trials.iter().flat_map(|trial| accelerations(&trial.readings, *stride));
         let mut found: Vec<f64> = found.collect();

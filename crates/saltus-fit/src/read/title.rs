@@ -3,12 +3,13 @@
 
 use super::aside::LeftAside;
 use super::cell::{Cell, spaced};
-use super::clause::{clauses, drop, error, frame_rate, lengths, names_rate, of_clauses, states_length};
+use super::clause::{clauses, drop, error, frame_rate, lengths, names_rate, of_clauses};
 use super::datum::{self, Datum};
 use super::grid::{Grid, shown};
 use super::heading::{DropHeight, Heading, What};
 use super::phrases::Phrase;
 use super::region::Region;
+use super::sizes::states_length;
 use super::units::{Dimension, Unit};
 use super::vocabulary::{Atom, ROWS, folded, misspelt};
 use super::words::{Kind, Word, split};

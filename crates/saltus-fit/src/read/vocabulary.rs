@@ -343,7 +343,7 @@ pub(super) fn first_word(text: &str) -> Option<&str> {
 }
 
 /// A text whose letters, digits and signs of full width, as East Asian keyboards write them, are
-/// the plain ones.
+/// the plain ones, and whose signs of an error, `+/-`, are one.
 pub(super) fn narrow(text: &str) -> String {
     let plain = |c: char| match c {
         '\u{ff01}'..='\u{ff5e}' => char::from_u32(u32::from(c) - u32::from('！') + u32::from('!')).unwrap_or(c),
@@ -352,7 +352,8 @@ pub(super) fn narrow(text: &str) -> String {
         '】' => ']',
         c => c,
     };
-    text.chars().map(plain).collect()
+    let text: String = text.chars().map(plain).collect();
+    ["+/-", "+/−", "+-"].iter().fold(text, |text, sign| text.replace(sign, "±"))
 }
 
 /// Whether a letter is of a script that parts no words by blanks.

@@ -129,15 +129,16 @@ pub(super) fn split(text: &str) -> Vec<Word> {
     let_loose(&mut words);
     under_a_tool(&mut words);
     lettered(&mut words);
-    // A number before a word is its place in an order, if none follows: '1. Rebound'.
+    // A number before a word is its place in an order, if none follows: '1. Rebound'; where words
+    // are not parted it stands before what it counts: `2回目`.
+    let counter = |w: &Word| (w.is(Atom::Trial) || w.is(Atom::Repeat)) && w.text.contains(unparted);
     for n in 1..words.len() {
         let alone = words.get(n + 1).is_none_or(|w| !matches!(w.kind, Kind::Number(_) | Kind::Letter));
         if let Kind::Number(place) = words[n - 1].kind
-            && n == 1
-            && matches!(words[n].kind, Kind::Known(_))
+            && (n == 1 && matches!(words[n].kind, Kind::Known(_)) || counter(&words[n]))
             && alone
         {
-            words[0].kind = Kind::Ordinal(place);
+            words[n - 1].kind = Kind::Ordinal(place);
         }
     }
     words

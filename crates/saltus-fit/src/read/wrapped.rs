@@ -205,7 +205,8 @@ fn below_name(text: &str, (first, heading): (usize, &str), row: impl Fn(&str) ->
 }
 
 /// What a device sends, numbers of the same names a line, `14:03:22.159 -> Distance: 26 cm`, as a
-/// table of those and the time; `None` where a line says something else.
+/// table of those and the time; `None` where a line says something else, but for words in place of
+/// a reading, of which fewer are lost than not: `Out of range`.
 ///
 /// The time of a bounce by the clock of the device, `Bounce 1: 8829 ms  level=1000`, is better than
 /// that at which the line came.
@@ -236,11 +237,19 @@ fn sent(text: &str) -> Option<String> {
     };
     let first = text.lines().position(|line| stamped(line).is_some())?;
     let (heading, _) = text.lines().nth(first).and_then(reading)?;
-    let alike = |line: &str| line.trim().is_empty() || reading(line).is_some_and(|(name, _)| name == heading);
-    if !text.lines().skip(first).all(alike) || text.lines().nth(first + 2).is_none() {
+    let alike = |line: &str| reading(line).is_some_and(|(name, _)| name == heading);
+    let lost = |line: &str| stamped(line).is_some_and(|stamp| !stamp.said.contains(|c: char| c.is_ascii_digit()));
+    let below = || text.lines().skip(first).filter(|line| !line.trim().is_empty());
+    let read = below().filter(|line| alike(line)).count();
+    if !below().all(|line| alike(line) || lost(line)) || read < 3 || 2 * read < below().count() {
         return None;
     }
-    Some(below_name(text, (first, &heading), |line| reading(line).map(|(_, row)| row)))
+    let row = |line: &str| match reading(line) {
+        Some((_, row)) => Some(row),
+        // A reading that was lost keeps its time.
+        None => stamped(line).map(|stamp| stamp.time.to_owned() + &",NaN".repeat(heading.matches(',').count())),
+    };
+    Some(below_name(text, (first, &heading), row))
 }
 
 /// Days and times by themselves, to a part of a second, below a line that names impacts: `# hits`.

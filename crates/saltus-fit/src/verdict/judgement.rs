@@ -55,7 +55,8 @@ pub(crate) const NAMED: f64 = 0.1;
 
 /// Two CORs that differ by less are the same for any purpose.
 pub(crate) const SAME: f64 = 0.005;
-/// A COR that changes by less, over all speeds or from impact to impact, may be called one.
+/// A COR that changes by less, over all speeds, from impact to impact or from drop to drop, may be
+/// called one.
 pub(crate) const LEVEL: f64 = 0.02;
 
 /// The COR and the findings, as the stages fill them.

@@ -109,10 +109,9 @@ pub(crate) fn single<M: OneKind>(
                 cor.high.max(drift.first).max(drift.last),
             );
             judgement.widen(Widening::Settings);
-            judgement.doubt(found);
-        } else {
-            judgement.note(found);
         }
+        let doubted = drift.repeats && (drift.last - drift.first).abs() > LEVEL;
+        judgement.findings.push(if doubted { Finding::doubt(found) } else { Finding::note(found) });
     }
     if let Some(spread) = kind.spread.filter(|_| alone && !differ) {
         judgement.note(FindingKind::DropsDiffer { spread, drops: kind.estimate.trials });

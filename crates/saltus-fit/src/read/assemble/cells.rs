@@ -1,7 +1,8 @@
 //! Cells as numbers in SI units, each with its error.
 
-use super::{Builder, Found, GRAVITY};
+use super::{Builder, Found};
 use crate::error::TableError;
+use crate::quantity::STANDARD_GRAVITY;
 use crate::read::aside::{LeftAside, Part, Why};
 use crate::read::cell::{Cell, Fault, clock};
 use crate::read::columns::Kind;
@@ -194,7 +195,7 @@ impl Builder<'_> {
         let found = self.number(row, column)?;
         if self.columns.columns[column].holds(What::Speed) {
             return Ok(found.map(|(speed, sigma)| {
-                (0.5 * speed * speed / GRAVITY, sigma.map(|sigma| sigma * speed.abs() / GRAVITY))
+                (0.5 * speed * speed / STANDARD_GRAVITY, sigma.map(|sigma| sigma * speed.abs() / STANDARD_GRAVITY))
             }));
         }
         if found.is_some_and(|(height, _)| height < 0.0) {

@@ -24,9 +24,6 @@ use super::{Event, Metadata, ReadOptions, Reading, Table, Trial};
 use crate::error::TableError;
 use crate::finding::{Doubt, Lines, Note, Remark, Repair, Shape};
 
-/// Gravity by which speeds become heights: any would do, since only their ratios count, m/s².
-const GRAVITY: f64 = 9.81;
-
 /// Everything a row needs to become readings.
 struct Builder<'a> {
     region: &'a Region<'a>,

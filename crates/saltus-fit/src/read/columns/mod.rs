@@ -159,7 +159,7 @@ impl Columns {
         found.siblings(region);
         found.lacking(region, released);
         found.not_understood(region)?;
-        found.sided();
+        found.sided(region);
         found.drops(region);
         found.summed();
         found.statistics(region, released)?;
@@ -182,6 +182,7 @@ impl Columns {
         self.vertical(region);
         self.infer(region, options)?;
         self.signals(region, options);
+        self.released(region);
         self.frames(region, fps, any)?;
         self.clocks(region);
         self.scales(region, options)?;

@@ -14,9 +14,21 @@ use crate::read::region::Region;
 use crate::read::units::{Dimension, Scale, Unit};
 use crate::read::vocabulary::{Atom, folded};
 
+/// Whether times and speeds of the same rows are those of one way, to within [`WORKED_OUT`].
+fn one_way(region: &Region<'_>, time: usize, speed: usize) -> bool {
+    let way = |&row: &usize| Some(region.view.number(row, time)? * region.view.number(row, speed)?);
+    let ways: Vec<f64> = region.rows.iter().filter_map(way).collect();
+    let (low, high) = ways.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), w| (low.min(*w), high.max(*w)));
+    ways.len() > 1 && low > 0.0 && high - low < WORKED_OUT * high
+}
+
+/// Speeds that are worked out are rounded to a per cent at most.
+const WORKED_OUT: f64 = 0.01;
+
 impl Columns {
-    /// Beside the speeds before and after each bounce the heights of release say nothing more.
-    pub(super) fn sided(&mut self) {
+    /// Beside the speeds before and after each bounce the heights of release say nothing more, and
+    /// neither do the times that a gate was dark, by which speeds are worked out.
+    pub(super) fn sided(&mut self, region: &Region<'_>) {
         let read = |what: What, at: At| {
             let of = |v: &Value| v.role == Role::Reading && v.what == what && v.at == at;
             let read = self.values().filter(|(_, c, v)| of(v) && c.heading.unknown.is_empty());
@@ -31,7 +43,11 @@ impl Columns {
             .values()
             .filter(|(_, c, v)| v.what == What::Height && v.role == Role::Max && c.heading.unknown.is_empty());
         let highest: Vec<usize> = highest.map(|(n, _, _)| n).collect();
-        for index in read(What::Height, At::Release).into_iter().chain(highest) {
+        let speeds: Vec<usize> = [At::Before, At::After].iter().flat_map(|&at| read(What::Speed, at)).collect();
+        let times = self.values().filter(|(_, _, v)| v.what == What::Time && v.role == Role::Reading);
+        let dark = |n: &usize| speeds.iter().any(|&speed| one_way(region, *n, speed));
+        let dark: Vec<usize> = times.map(|(n, _, _)| n).filter(dark).collect();
+        for index in read(What::Height, At::Release).into_iter().chain(highest).chain(dark) {
             self.leave(index, Why::Elsewhere);
         }
     }
@@ -142,7 +158,7 @@ impl Columns {
         Ok(())
     }
 
-    fn place(&mut self, index: usize, at: At, trial: String) {
+    pub(super) fn place(&mut self, index: usize, at: At, trial: String) {
         if let Kind::Value(value) = &mut self.columns[index].kind {
             (value.at, value.trial, value.or_trial) = (at, trial, false);
         }
@@ -240,23 +256,24 @@ impl Columns {
         }
     }
 
-    /// The flight after the first bounce, the only one beside a height of release, is that of the
-    /// drop of its row.
+    /// Flights after the first bounce, and no others, beside a height of release are those of the
+    /// drop of their row.
     pub(super) fn flown(&mut self) {
         let read = |v: &Value| v.role == Role::Reading;
         let nth: Vec<_> = self.values().filter(|(_, _, v)| read(v) && matches!(v.at, At::Nth(_))).collect();
-        let &[(index, column, value)] = nth.as_slice() else { return };
-        let first = value.what == What::Interval && value.at == At::Nth(1) && column.heading.unknown.is_empty();
+        let first =
+            |c: &Column, v: &Value| v.what == What::Interval && v.at == At::Nth(1) && c.heading.unknown.is_empty();
         let of_rows = self
             .values()
             .any(|(_, c, v)| read(v) && v.at == At::Row && v.what != What::Unsaid && c.heading.unknown.is_empty());
         let released = self
             .values()
             .any(|(_, c, v)| read(v) && (v.what, v.at) == (What::Height, At::Release) && c.heading.unknown.is_empty());
-        if first && released && !of_rows {
-            let trial = value.trial.clone();
-            self.place(index, At::Row, trial);
+        if !nth.iter().all(|(_, c, v)| first(c, v)) || !released || of_rows {
+            return;
         }
+        let flights: Vec<(usize, String)> = nth.into_iter().map(|(n, _, v)| (n, v.trial.clone())).collect();
+        flights.into_iter().for_each(|(index, trial)| self.place(index, At::Row, trial));
     }
 
     /// `u` beside `v`, `v` beside `v'`, or `v down` beside `v up`: the speeds before and after, as

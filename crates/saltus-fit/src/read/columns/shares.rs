@@ -4,13 +4,14 @@
 use super::{Column, Columns, Kind};
 use crate::error::TableError;
 use crate::finding::Note;
+use crate::quantity::STANDARD_GRAVITY;
 use crate::read::aside::Why;
 use crate::read::cell::Cell;
 use crate::read::grid::shown;
 use crate::read::heading::{At, Heading, Of, Role, Value, What};
 use crate::read::region::Region;
 use crate::read::sequence::LEVEL;
-use crate::read::units::{Scale, Unit};
+use crate::read::units::{Dimension, Scale, Unit};
 use crate::read::vocabulary::Atom;
 use crate::read::written::{rounds_to, step};
 use crate::statistics::median;
@@ -163,8 +164,8 @@ impl Columns {
     }
 }
 
-/// Whether heights side by side are nearly as high as one another, and well below the release, or
-/// `below` where it stands in no column: repeats, and not bounces.
+/// Whether heights side by side, or flights by how high they rise, are level with one another, and
+/// well below the release, or `below` where it stands in no column: repeats, and not bounces.
 pub(in crate::read) fn level(region: &Region<'_>, drop: Option<usize>, nth: &[usize], below: bool) -> bool {
     let ratios = |pairs: &[(usize, usize)]| {
         let all = pairs.iter().flat_map(|&(a, b)| parts(region, a, b));
@@ -172,15 +173,21 @@ pub(in crate::read) fn level(region: &Region<'_>, drop: Option<usize>, nth: &[us
     };
     let later: Vec<(usize, usize)> = nth.windows(2).map(|w| (w[0], w[1])).collect();
     let below = drop.map_or(below, |drop| ratios(&[(drop, nth[0])]).is_some_and(|first| first < LEVEL));
-    below && ratios(&later).is_some_and(|later| later > LEVEL)
+    below && ratios(&later).is_some_and(|later| later > LEVEL && later * LEVEL < 1.0)
 }
 
-/// What part of the number in column `a` the one in column `b` is, row by row, each in its unit.
+/// What part of the height in column `a` the one in column `b` is, row by row, each in its unit; a
+/// flight of T rises g T²/8.
 fn parts(region: &Region<'_>, a: usize, b: usize) -> Vec<f64> {
     let unit = |n: usize| region.header.get(n).and_then(|name| Heading::parse(name).unit);
-    let over = unit(a).zip(unit(b)).map_or(1.0, |(a, b)| b.si(1.0) / a.si(1.0));
-    let part = |&row: &usize| Some(over * region.view.number(row, b)? / region.view.number(row, a)?);
-    region.rows.iter().filter_map(part).collect()
+    let units = unit(a).zip(unit(b));
+    let height = |n: usize, row: usize| {
+        let value =
+            unit(n).filter(|_| units.is_some()).map_or(1.0, |unit| unit.si(1.0)) * region.view.number(row, n)?;
+        let timed = unit(n).is_some_and(|unit| unit.dimension == Dimension::Time);
+        Some(if timed { STANDARD_GRAVITY * value * value / 8.0 } else { value })
+    };
+    region.rows.iter().filter_map(|&row| Some(height(b, row)? / height(a, row)?)).collect()
 }
 
 /// Whether heights side by side that look level are as well those of bounces that lose as little:

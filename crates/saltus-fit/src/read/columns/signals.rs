@@ -1,10 +1,13 @@
-//! Columns of what a sensor showed at each contact, beside the times of these.
+//! Columns beside contacts and flights: what a sensor showed at each contact, and the heights from
+//! which the ball was dropped before each flight.
 
 use super::Columns;
+use crate::quantity::STANDARD_GRAVITY;
 use crate::read::ReadOptions;
 use crate::read::aside::Why;
-use crate::read::heading::{At, Role, What};
+use crate::read::heading::{At, Role, Value, What};
 use crate::read::region::Region;
+use crate::read::sequence::LEVEL;
 use crate::read::vocabulary::Atom;
 
 /// Heights of one ball are as the squares of its flights: where these parts differ by more than
@@ -35,6 +38,34 @@ impl Columns {
             if rows.len() > 3 && !(low > 0.0 && high < ALIKE * low) {
                 self.leave(index, Why::Other);
             }
+        }
+    }
+
+    /// Heights beside flights, a drop a row, of which none is that of its own flight, `height (m),
+    /// flight time (s)`: the ball was dropped from there, if each flight rises to one part of it.
+    pub(super) fn released(&mut self, region: &Region<'_>) {
+        let of_rows = |what: What| {
+            let first = |at: At| at == At::Row || what == What::Interval && at == At::Nth(1);
+            let plain = move |v: &Value| (v.what, v.role) == (what, Role::Reading) && first(v.at) && v.group.is_empty();
+            self.values().filter(move |(_, _, v)| plain(v)).map(|(n, c, _)| (n, c)).collect::<Vec<_>>()
+        };
+        let (heights, flights) = (of_rows(What::Height), of_rows(What::Interval));
+        let [(height, column)] = heights.as_slice() else { return };
+        let risen = [Atom::Rebound, Atom::Top, Atom::After, Atom::Impact].iter().any(|atom| column.heading.has(*atom));
+        if risen || self.number().is_some() || self.any(What::Height, Some(At::Release)) {
+            return;
+        }
+        let si = |row: usize, n: usize| Some(self.unit_of(region, n)?.si(region.view.number(row, n)?));
+        let eighth = STANDARD_GRAVITY / 8.0;
+        let part = |(row, n): (usize, usize)| Some(eighth * si(row, n)?.powi(2) / si(row, *height)?);
+        let pairs = region.rows.iter().flat_map(|&row| flights.iter().map(move |(n, _)| (row, *n)));
+        let mut parts: Vec<f64> = pairs.filter_map(part).collect();
+        parts.sort_unstable_by(f64::total_cmp);
+        let (Some(least), Some(most)) = (parts.first(), parts.last()) else { return };
+        if parts.len() > 1 && *least > 0.0 && *most < LEVEL * LEVEL && *most < ALIKE * least {
+            let height = *height;
+            self.place(height, At::Release, String::new());
+            self.flown();
         }
     }
 }

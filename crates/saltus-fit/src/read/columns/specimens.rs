@@ -8,12 +8,13 @@ use crate::read::heading::{At, Heading, Role, Value, What};
 use crate::read::region::Region;
 use crate::read::vocabulary::{Atom, ROWS};
 use crate::read::words::split;
+use crate::statistics::median;
 
 /// So many rows are named alike by no chance.
 const SEVERAL: usize = 3;
 
-/// Balls of one kind come back to heights that are off by less than this factor: a COR of 0.9 that
-/// differs by two hundredths from ball to ball gives 1.09 over ten of them.
+/// Balls of one kind come back to heights that are off the usual one by less than this factor: a
+/// COR of 0.7 that differs by 0.015 from ball to ball, as a standard deviation, gives 1.09 at two.
 const SAME: f64 = 1.1;
 
 /// What stands before the number or the letter of one of several: `ball` of `ball A`, `B` of `B01`.
@@ -123,9 +124,9 @@ impl Columns {
         let level = |column: usize, what: What, of: Option<usize>| {
             let part = |&row: &usize| Some(number(row, column)? / of.map_or(Some(1.0), |n| number(row, n))?);
             let power = if what == What::Speed { 2 } else { 1 };
-            let parts = region.rows.iter().filter_map(part).map(|part| part.powi(power));
-            let (low, high) = parts.fold((f64::INFINITY, 0.0f64), |(l, h), part| (l.min(part), h.max(part)));
-            high < SAME * low
+            let mut parts: Vec<f64> = region.rows.iter().filter_map(part).map(|part| part.powi(power)).collect();
+            let usual = median(&mut parts).unwrap_or_default();
+            parts.iter().all(|part| *part < SAME * usual && usual < SAME * part)
         };
         let from = before.first().map(|(n, _, _)| *n);
         !after.is_empty()

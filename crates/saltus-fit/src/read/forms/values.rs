@@ -2,7 +2,7 @@
 
 use super::super::cell::{self, Cell, length};
 use super::super::clause;
-use super::super::heading::{Heading, What};
+use super::super::heading::{Heading, Meaning, What};
 use super::super::named::bounce;
 use super::super::phrases::Phrase;
 use super::super::units::{Dimension, Unit};
@@ -131,19 +131,20 @@ pub(super) fn listed_numbers(line: &str) -> Option<Vec<&str>> {
     (values.len() >= LIST && values.iter().all(|value| value.parse::<f64>().is_ok())).then_some(values)
 }
 
-/// The only part of a line, between commas, that names a quantity and its unit: `Heights (m), first
-/// the drop`.
+/// The only part of a line, between commas, that names a quantity and its unit, or frames of
+/// contacts: `Heights (m), first the drop`.
 pub(super) fn named_list(line: &str) -> Option<&str> {
     let names = |part: &&str| {
         let heading = Heading::parse(part);
-        heading.unit.is_some() && heading.understood()
+        let frames = heading.meaning == Meaning::Frame && heading.has(Atom::Impact);
+        (heading.unit.is_some() || frames) && heading.understood()
     };
     // As many names as commas part are those of columns.
     let columns = |line: &str| line.split(',').filter(|part| Heading::parse(part).unit.is_some()).count() > 1;
     let mut found = Some(line)
         .filter(|line| !columns(line))?
         .split(", ")
-        .map(|part| part.trim().trim_end_matches(':'))
+        .map(|part| part.trim().trim_end_matches([':', ' ']))
         .filter(names);
     found.next().filter(|_| found.next().is_none())
 }

@@ -54,6 +54,7 @@ impl Heading {
             && !has(Atom::Error)
             && !has(Height)
             && !has(Position)
+            && !((has(Atom::Frame) || has(Atom::Time)) && has(Atom::Impact))
             && self.unit.is_none_or(|u| u.dimension == Dimension::Other);
         if setting && !has(Label) {
             return Meaning::Setting;

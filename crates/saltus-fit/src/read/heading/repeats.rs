@@ -38,11 +38,14 @@ fn counted(words: &[Word], text: &str, bracketed: bool) -> Option<(usize, bool)>
     let filler = |w: &Word| matches!(w.kind, Kind::Known([Atom::Filler, ..]));
     let trial = |w: &Word| is(w, &[Atom::Trial, Atom::Repeat]);
     let taken = |w: &Word| trial(w) || is(w, &[Atom::Rebound, Atom::Impact]);
-    // `3.` is a place in an order.
+    // `3.`, `3回目` and `第3次` are places in an order.
     let placed = |w: &Word| {
         text.match_indices(&w.text).any(|(at, number)| {
-            let after = text[at + number.len()..].strip_prefix(['.', 'º', 'ª']);
-            after.is_some_and(|after| !after.starts_with(|c: char| c.is_ascii_digit()))
+            let after = &text[at + number.len()..];
+            let dotted = after.strip_prefix(['.', 'º', 'ª']);
+            dotted.is_some_and(|after| !after.starts_with(|c: char| c.is_ascii_digit()))
+                || after.starts_with("回目")
+                || text[..at].ends_with('第')
         })
     };
     let count = |w: &Word| match w.kind {
@@ -128,6 +131,8 @@ mod tests {
             "trial 3 mean",
             "ball 3 trials",
             "mean 3",
+            "リバウンド 3回目",
+            "反弹 第3次",
         ] {
             assert_eq!(bare(text, false), split(text).iter().map(|w| w.text.as_str()).collect::<Vec<_>>().join(" "));
         }

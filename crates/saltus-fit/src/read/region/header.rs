@@ -58,7 +58,7 @@ pub(super) fn headers(view: View<'_>, legend: &Legend, row: usize, end: usize) -
     if !names_only(view, row) {
         return found;
     }
-    let line = |n: usize| -> Vec<String> { view.cells(n).map(|cell| legend.words(cell).to_owned()).collect() };
+    let line = |n: usize| -> Vec<String> { view.cells(n).map(|cell| legend.words(cell).into_owned()).collect() };
     let one = line(row);
     let one = clause_of(view, &one, row + 1..end).map_or(one, |name| vec![name]);
     let below = |n: usize| n < end && names_only(view, n);

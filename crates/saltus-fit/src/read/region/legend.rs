@@ -1,5 +1,7 @@
 //! What lines around a table say that the signs above its columns stand for.
 
+use std::borrow::Cow;
+
 use super::super::cell::{Cell, read};
 use super::super::clause::clauses;
 use super::super::grid::View;
@@ -22,9 +24,27 @@ impl Legend {
         Self(lines.flat_map(clauses).filter_map(stated).collect())
     }
 
-    /// What a cell says: the words that its sign stands for, or itself.
-    pub(super) fn words<'a>(&'a self, cell: &'a str) -> &'a str {
-        self.0.iter().find(|(sign, _)| sign == cell).map_or(cell, |(_, words)| words)
+    /// What a cell says: the words that its sign stands for, or itself. A number, the unit and the
+    /// name of a statistic may stand beside the sign: `t2 (s)`, `mean t (s)`.
+    pub(super) fn words<'a>(&'a self, cell: &'a str) -> Cow<'a, str> {
+        let (name, unit) = cell.split_at(cell.find(['(', '[']).unwrap_or(cell.len()));
+        let says = |(sign, words): &'a (String, String)| {
+            if sign == cell {
+                return Some(Cow::Borrowed(words.as_str()));
+            }
+            let digits = |rest: &&str| rest.bytes().all(|b| b.is_ascii_digit());
+            let number = |token: &'a str| token.strip_prefix(sign.as_str()).filter(digits);
+            let (own, beside): (Vec<_>, Vec<_>) = name.split_whitespace().partition(|token| number(token).is_some());
+            let [token] = own.as_slice() else { return None };
+            let whole = beside.is_empty() || Heading::parse(&beside.join(" ")).sums_up();
+            let fits = whole && Heading::parse(words).unit.is_some() == unit.is_empty();
+            // Words that count contacts themselves are of one reading, whose repeats are counted.
+            let count = number(token).filter(|n| !n.is_empty()).unwrap_or_default();
+            let of = if count.is_empty() || !words.contains(|c: char| c.is_ascii_digit()) { "" } else { "trial" };
+            let spelt = [words, of, count, &beside.join(" "), unit].join(" ");
+            fits.then(|| Cow::Owned(spelt.split_whitespace().collect::<Vec<_>>().join(" ")))
+        };
+        self.0.iter().find_map(says).unwrap_or(Cow::Borrowed(cell))
     }
 }
 
@@ -46,7 +66,7 @@ fn stated(clause: &str) -> Option<(String, String)> {
     [words, bare].into_iter().find_map(|words| {
         let heading = Heading::parse(words);
         let says = match &heading.meaning {
-            Meaning::Value(value) => value.what != What::Unsaid && heading.unit.is_some(),
+            Meaning::Value(value) => value.what != What::Unsaid,
             Meaning::Setting | Meaning::Trial => true,
             _ => false,
         };
@@ -81,9 +101,31 @@ mod tests {
             ("D = wobble (cm)", None),
             ("Height: rebound height (cm)", None),
             ("d = diameter", None),
+            ("t = time between the bounces", Some(("t", "time between the bounces"))),
         ] {
             let expected = expected.map(|(sign, words)| (sign.to_owned(), words.to_owned()));
             assert_eq!(stated(clause), expected, "{clause}");
+        }
+    }
+
+    #[test]
+    fn units_and_numbers_stand_behind_a_sign() {
+        let legend = Legend(vec![
+            ("t".to_owned(), "time between the bounces".to_owned()),
+            ("R".to_owned(), "rebound height in cm".to_owned()),
+        ]);
+        for (cell, words) in [
+            ("t (s)", "time between the bounces (s)"),
+            ("t2 (s)", "time between the bounces 2 (s)"),
+            ("R", "rebound height in cm"),
+            ("R3", "rebound height in cm 3"),
+            ("R (mm)", "R (mm)"),
+            ("t mean (s)", "time between the bounces mean (s)"),
+            ("mean t (s)", "time between the bounces mean (s)"),
+            ("t wobble (s)", "t wobble (s)"),
+            ("trial", "trial"),
+        ] {
+            assert_eq!(legend.words(cell), words, "{cell}");
         }
     }
 }

@@ -60,6 +60,9 @@ pub(super) fn words(kind: &FindingKind) -> Option<String> {
         FindingKind::ModelNotHeeded => {
             "a series chooses its model by itself: what was asked for is not heeded".to_owned()
         }
+        FindingKind::DragNotHeeded => {
+            "the drag of the ball is not taken out: without a scale of lengths (--scale), or the frame rate (--fps), nothing tells how fast it flew".to_owned()
+        }
         _ => return recordings(kind),
     })
 }

@@ -3,8 +3,8 @@
 
 use super::{Candidates, Found};
 use crate::elementary::exp;
-use crate::model::{BEND, Dual, GRAVITY, LIGHT_DRAG, Law, ORDINARY_DRAG, STANDARD_GRAVITY, Sample};
-use crate::quantity::Measured;
+use crate::model::{BEND, Dual, GRAVITY, LIGHT_DRAG, Law, ORDINARY_DRAG, Sample};
+use crate::quantity::{Measured, STANDARD_GRAVITY};
 use crate::solve::series::recording::Unseen;
 use crate::statistics::NORMAL;
 
