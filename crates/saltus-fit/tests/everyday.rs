@@ -6,7 +6,7 @@
 mod typed;
 
 use proptest::prelude::*;
-use saltus_fit::{FindingKind, Verdict};
+use saltus_fit::{FindingKind, Fit, Verdict};
 use typed::{fit, read, trusted};
 
 fn lines(rows: impl IntoIterator<Item = String>) -> String {
@@ -96,7 +96,7 @@ proptest! {
     fn a_device_may_lose_a_reading(e in 0.6f64..0.85, form in 0usize..4) {
         let (start, name, lost) = [
             ("HC-SR04 ready", "Distance", "Out of range"),
-            ("Sensor iniciado", "Distancia", "Fora de alcance"),
+            ("14:22:04.900 -> boot v2 Jun 8 2016\n14:22:04.910 -> Sensor listo", "Distancia", "Fuera de rango"),
             ("Sensor gestartet", "Abstand", "kein Echo"),
             ("Датчик готов", "Расстояние", "нет сигнала"),
         ][form];
@@ -173,6 +173,64 @@ proptest! {
             format!("{},{:.2},{v:.3},{:.2},{w:.3}", n + 1, 25.0 / v, 25.0 / w)
         };
         let text = format!("Steel ball against a wall\nrun,t1 (ms),v before (m/s),t2 (ms),v after (m/s)\n{}", lines((0..8).map(row)));
+        prop_assert!((trusted(&text) - e).abs() < 0.02, "{}", text);
+    }
+
+    /// Rebounds that are level with one another, and of no height of release, may be of drops that
+    /// repeat each other.
+    #[test]
+    fn level_rebounds_without_a_release_are_not_trusted(high in 40.0f64..90.0, seed in 0usize..50) {
+        let row = |ball: &str, k: usize| {
+            let reads: Vec<String> = (0..3).map(|n| format!("{:.0}", high + 5.0 * k as f64 + 2.0 * off(seed + 4 * k + n))).collect();
+            format!("{ball},{}", reads.join(","))
+        };
+        let text = format!("Ball,Rebound 1 (cm),Rebound 2 (cm),Rebound 3 (cm)\n{}", lines([row("Tennis", 0), row("Rubber", 1), row("Golf", 2)]));
+        if let Ok(table) = read(&text) {
+            let report = Fit::new().run(&table).unwrap();
+            prop_assert!(report.groups().iter().all(|g| g.report.verdict() != Verdict::Trusted), "{}{}", text, report);
+        }
+    }
+
+    /// Flights that are called by their number are repeats beside the mean of them, whatever that
+    /// is called, and a name, a number and a unit in cells of their own state the release.
+    #[test]
+    fn repeats_have_a_mean_beside_them(e in 0.5f64..0.85, form in 0usize..3) {
+        let rows = [40.0, 60.0, 80.0, 100.0, 125.0];
+        let flight = |h: f64, n: usize| 2.0 * e * (2.0 * h / 981.0).sqrt() + 0.003 * off(n);
+        let rebound = |n: usize| 120.0 * e * e + 0.4 * off(n);
+        let text = match form {
+            0 => format!("Fallhöjd (cm);Flygtid 1 (s);Flygtid 2 (s);Medel (s)\n{}", lines(rows.iter().zip(0..).map(|(h, n)| {
+                let (a, b) = (flight(*h, n), flight(*h, n + 7));
+                format!("{h};{a:.3};{b:.3};{:.3}", 0.5 * (a + b))
+            }))),
+            1 => format!("t – time between the first and second bounce (stopwatch)\nh [m],t1 [s],t2 [s],Average [s]\n{}", lines(rows.iter().zip(0..).map(|(h, n)| {
+                let (a, b) = (flight(*h, n), flight(*h, n + 7));
+                format!("{},{a:.3},{b:.3},{:.3}", 0.01 * h, 0.5 * (a + b))
+            }))),
+            _ => format!("Rubber balls on steel,,,\nDrop height,120,cm,Limits 60-90 cm\nBall,Bounce 1 (cm),Bounce 2 (cm),Mean (cm)\n{}", lines((0..8).map(|n| {
+                let (a, b) = (rebound(n), rebound(n + 5));
+                format!("{},{a:.1},{b:.1},{:.2}", n + 1, 0.5 * (a + b))
+            }))),
+        };
+        let report = fit(&text);
+        let cors: Vec<f64> = if report.groups().is_empty() { vec![report.cor().unwrap().value] } else { report.groups().iter().filter_map(|g| Some(g.report.cor()?.value)).collect() };
+        prop_assert!(!cors.is_empty() && cors.iter().all(|cor| (cor - e).abs() < 0.02), "{}{}", text, report);
+    }
+
+    /// Programs write thousandths behind a colon, names of their own above those of columns, and
+    /// units in the remark behind a list.
+    #[test]
+    fn programs_write_what_they_record(e in 0.6f64..0.85, form in 0usize..3) {
+        let samples = || (0..150).map(|n| 0.02 * n as f64).map(|t| (t, height(e, t)));
+        let text = match form {
+            0 => format!("Trajectory of a ball\nTime;X (cm);Y (cm)\n{}", lines(samples().map(|(t, h)| format!("0:00:{:02.0}:{:03.0};42.1;{:.2}", t.floor(), 1000.0 * (t - t.floor()), 100.0 * h)))),
+            1 => format!("FREQUENCY\t50\nMARKER_NAMES\tball\nFrame\tTime\tball X\tball Y\tball Z\n{}", lines(samples().zip(1..).map(|((t, h), n)| format!("{n}\t{t:.3}\t{:.2}\t{:.2}\t{:.2}", 210.7 + off(n), -88.1 + off(n + 3), 1000.0 * h)))),
+            _ => {
+                let list = |values: Vec<String>| values.chunks(10).map(|part| part.join(" ")).collect::<Vec<_>>().join(" ...\n ");
+                let (t, d): (Vec<_>, Vec<_>) = samples().map(|(t, h)| (format!("{t:.2}"), format!("{:.4}", 1.6 - h))).unzip();
+                format!("% laser above a ball\nt = [{}]; % s\nd = [{}]; % m, distance from sensor\n", list(t), list(d))
+            }
+        };
         prop_assert!((trusted(&text) - e).abs() < 0.02, "{}", text);
     }
 

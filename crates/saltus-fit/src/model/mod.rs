@@ -21,7 +21,7 @@ pub(crate) use flight::{FOLLOWED, Flight, FlightTrial, LONGEST_CONTACT, READINGS
 pub(crate) use heights::Heights;
 pub(crate) use lasting::{BEFORE, LASTING};
 pub(crate) use law::CorLaw;
-pub(crate) use physics::{BEND, LIGHT_DRAG, LOSSLESS, ORDINARY_DRAG, PHYSICAL_DRAG, VAGUE};
+pub(crate) use physics::{BEND, HARDEST, LIGHT_DRAG, LOSSLESS, ORDINARY_DRAG, PHYSICAL_DRAG, VAGUE};
 pub(crate) use places::{FLOOR, GRAVITY, SPEED, TIME};
 pub(crate) use problem::{Bounds, Model};
 pub(crate) use trajectory::{LEAST_DRAG, Law, Sample, Trajectory};

@@ -14,6 +14,8 @@ pub(crate) const PHYSICAL_DRAG: f64 = 0.5;
 
 /// No ball is known to keep more of its speed.
 pub(crate) const LOSSLESS: f64 = 0.995;
+/// Only glass and steel keep more of their speed: readings that agree on more have to show a loss.
+pub(crate) const HARDEST: f64 = 0.975;
 
 /// A 95 % interval wider than this says hardly anything: of the CORs of all balls that it leaves
 /// out less than half.

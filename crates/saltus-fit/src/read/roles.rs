@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use super::ReadOptions;
 use super::aside::Why;
 use super::cell::{Cell, clock};
-use super::columns::{Column, Columns, Kind, either, level};
+use super::columns::{Column, Columns, Kind, either, falling, level};
 use super::grid::shown;
 use super::heading::{At, Heading, Role, Value, What};
 use super::region::Region;
@@ -54,7 +54,14 @@ impl Columns {
 
     /// Means, errors, extremes and losses, each beside the readings it belongs to.
     pub(super) fn statistics(&mut self, region: &Region<'_>, released: bool) -> Result<(), TableError> {
-        let values: Vec<(usize, Value)> = self.values().map(|(n, _, v)| (n, v.clone())).collect();
+        // A mean of seconds, `Average (s)`, is of any time.
+        let timed = |c: &Column| [Atom::Time, Atom::Interval, Atom::Total].iter().any(|atom| c.heading.has(*atom));
+        let said = |c: &Column, v: &Value| match (v.role, v.what) {
+            (Role::Mean | Role::Max | Role::Min, What::Time) if !timed(c) => What::Unsaid,
+            (_, what) => what,
+        };
+        let of = |(n, c, v): (usize, &Column, &Value)| (n, Value { what: said(c, v), ..v.clone() });
+        let values: Vec<(usize, Value)> = self.values().map(of).collect();
         let same = |a: &Value, b: &Value| a.what == b.what || a.what == What::Unsaid || b.what == What::Unsaid;
         let placed = |a: &Value, b: &Value| (a.at == At::Release) == (b.at == At::Release);
         let role = |v: &Value, role: Role| v.role == role;
@@ -235,11 +242,16 @@ impl Columns {
         let averaged = mean && (drop.is_some() || released);
         // A time until rest is that of a drop, and of no bounce.
         let totals = drop.is_some() && nth.iter().all(|&n| self.columns[n].holds(What::Total));
-        if !rows && !averaged && !totals && !level(region, drop, &nth, mean || released) {
+        // Level numbers of no release, of which some rise, are of drops that repeat each other.
+        let high = || nth.iter().all(|&n| self.columns[n].holds(What::Height));
+        let open = drop.is_none() && !mean && !released && high() && level(region, None, &nth, true);
+        let open = !rows && open && !falling(region, &nth);
+        if !rows && !averaged && !totals && !open && !level(region, drop, &nth, mean || released) {
             return Ok(());
         }
         let trials = nth.iter().any(|&n| self.columns[n].heading.has(Atom::Trial));
-        if !(rows || averaged || totals || trials) && drop.is_some_and(|drop| either(region, drop, &nth)) {
+        let either = !(rows || averaged || totals || trials) && drop.is_some_and(|drop| either(region, drop, &nth));
+        if open || either {
             let name = |n: usize| shown(&self.columns[n].heading.text);
             let (first, second) = (name(nth[0]), name(nth[1]));
             let message = format!("do '{first}' and '{second}' follow one another, or does each begin with a drop?");

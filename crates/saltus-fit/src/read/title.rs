@@ -80,7 +80,8 @@ pub(super) fn stated(region: &Region<'_>) -> Stated {
     found.datum = datum::stated(&region.view.grid.comments().take(ROWS).chain(own).collect::<Vec<_>>());
     for (row, (line, text)) in rows.into_iter().zip(said) {
         let cells: Vec<&str> = cells(row).collect();
-        let (fps, height, sigma) = (frame_rate(&text), drop(&text).or(drop(&cells.join("; "))), error(&text));
+        let (fps, height, sigma) =
+            (frame_rate(&text), drop(&text).or(drop(&cells.join("; "))).or_else(|| begun(&cells)), error(&text));
         let zero = matches!(&found.datum, Some(Datum::Zero(zero)) if zero.line == line);
         if !zero
             && fps.is_none()
@@ -109,6 +110,13 @@ pub(super) fn stated(region: &Region<'_>) -> Stated {
         found.units.0 = Some(Unit::frame(fps));
     }
     found
+}
+
+/// The height of release that a name, a number and its unit state in cells of their own, whatever
+/// stands in those behind them.
+fn begun(cells: &[&str]) -> Option<DropHeight> {
+    let [name, number, unit, ..] = cells else { return None };
+    drop(&format!("{name} {number} {unit}"))
 }
 
 /// A cell whose number, by itself or behind a sign, is written without blanks between thousands.

@@ -115,16 +115,18 @@ pub(super) fn lettered(text: &str) -> Option<String> {
     framed.then(|| text.lines().map(inner).collect::<Vec<_>>().join("\n") + "\n")
 }
 
-/// A text whose times of four parts, `0:00:01:25`, end in hundredths, written as such: what
-/// Kinovea's are, and those of which one is above every count of frames in a second of a time code.
-/// `None` where no cell is such a time, or it may end in frames.
+/// A text whose times of four parts, `0:00:01:25`, end in hundredths, or in thousandths where they
+/// have three digits, written as such: what Kinovea's are, and those of which one is above every
+/// count of frames in a second of a time code. `None` where no cell is such a time, or it may end
+/// in frames.
 pub(super) fn timecoded(text: &str) -> Option<String> {
     let part = |cell: &str| -> Option<(usize, u32)> {
         let cell = cell.trim();
         let (time, last) = cell.rsplit_once(':')?;
         let parts = time.split(':').all(|part| !part.is_empty() && part.chars().all(|c| c.is_ascii_digit()));
-        let digits = last.len() == 2 && last.chars().all(|c| c.is_ascii_digit());
-        (parts && digits && time.matches(':').count() == 2).then(|| Some((time.len(), last.parse().ok()?)))?
+        let digits = matches!(last.len(), 2 | 3) && last.chars().all(|c| c.is_ascii_digit());
+        let last = if last.len() == 3 { Some(FRAMES) } else { last.parse().ok() };
+        (parts && digits && time.matches(':').count() == 2).then(|| Some((time.len(), last?)))?
     };
     let marks = [';', '\t', ',', ' '];
     let first = |line: &'_ str| line.trim_start().split(marks).next().and_then(part);
@@ -235,7 +237,8 @@ fn sent(text: &str) -> Option<String> {
         let (names, cells): (Vec<String>, Vec<String>) = stamp.into_iter().chain(parts.iter().map(cell)).unzip();
         Some((names.join(","), cells.join(",")))
     };
-    let first = text.lines().position(|line| stamped(line).is_some())?;
+    // Before the first of them a device may tell what it is.
+    let first = text.lines().position(|line| reading(line).is_some())?;
     let (heading, _) = text.lines().nth(first).and_then(reading)?;
     let alike = |line: &str| reading(line).is_some_and(|(name, _)| name == heading);
     let lost = |line: &str| stamped(line).is_some_and(|stamp| !stamp.said.contains(|c: char| c.is_ascii_digit()));
@@ -348,6 +351,7 @@ mod tests {
     fn a_fourth_part_of_a_time_is_hundredths_or_asked() {
         let text = "0:00:00:08;1\n0:00:00:99;2\n";
         assert_eq!(timecoded(text).as_deref(), Some("0:00:00.08;1\n0:00:00.99;2\n"));
+        assert_eq!(timecoded("0:00:00:008;1\n0:00:01:010;2\n").as_deref(), Some("0:00:00.008;1\n0:00:01.010;2\n"));
         let text = "#Kinovea\n0:00:00:08;1\n0:00:01:10;2\n";
         assert_eq!(timecoded(text).as_deref(), Some("#Kinovea\n0:00:00.08;1\n0:00:01.10;2\n"));
         for text in ["0:00:00:08;1\n0:00:01:24;2\n", "0:00:99;1\n0:01:98;2\n", "0:00:00:99\n", "a:b:c:99\nd:e:f:98\n"] {

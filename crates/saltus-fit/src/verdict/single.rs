@@ -4,7 +4,7 @@ use super::judgement::{Cor, Judgement, LEVEL, SAME};
 use crate::compare::settings::{differ, differ_beside, drift};
 use crate::evidence::{Evidence, TrialEvidence};
 use crate::finding::{Finding, FindingKind, Widening};
-use crate::model::LOSSLESS;
+use crate::model::{HARDEST, LOSSLESS};
 use crate::quantity::{Readings, Source, Sourced};
 use crate::read::Trial;
 use crate::solve::kind::{Kind, one_kind};
@@ -82,7 +82,8 @@ pub(crate) fn single<M: OneKind>(
         judgement.doubt(FindingKind::JustEnough { readings });
     }
     scatter(judgement, kind, evidence, &mut cor);
-    if cor.value > LOSSLESS {
+    // Numbers that are level may be of drops that repeat each other.
+    if cor.value > LOSSLESS || cor.value > HARDEST && cor.high >= 1.0 {
         judgement.doubt(FindingKind::Lossless { readings });
     }
     let differ = settings::<M>(judgement, kind, (trials, evidence), &mut cor);

@@ -13,7 +13,7 @@ mod signals;
 mod specimens;
 
 use shares::of_hundredths;
-pub(super) use shares::{either, level};
+pub(super) use shares::{either, falling, level};
 
 use std::collections::HashSet;
 

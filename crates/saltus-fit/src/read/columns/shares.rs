@@ -176,6 +176,11 @@ pub(in crate::read) fn level(region: &Region<'_>, drop: Option<usize>, nth: &[us
     below && ratios(&later).is_some_and(|later| later > LEVEL && later * LEVEL < 1.0)
 }
 
+/// Whether the numbers of every row fall from column to column.
+pub(in crate::read) fn falling(region: &Region<'_>, nth: &[usize]) -> bool {
+    nth.windows(2).all(|pair| parts(region, pair[0], pair[1]).iter().all(|part| *part < 1.0))
+}
+
 /// What part of the height in column `a` the one in column `b` is, row by row, each in its unit; a
 /// flight of T rises g T²/8.
 fn parts(region: &Region<'_>, a: usize, b: usize) -> Vec<f64> {

@@ -2,7 +2,7 @@
 //! row, dumps of a database, lists of a script that go on in the next line.
 
 use super::super::cell::{self, Cell};
-use super::super::heading::Heading;
+use super::super::heading::{Heading, What};
 use super::super::units::Unit;
 use super::values::{LIST, listed_values};
 
@@ -209,10 +209,10 @@ pub(super) fn scripted(text: &str) -> Option<String> {
             continue;
         }
         lists += 1;
-        let unit = Unit::parse(&remark).is_some() && Heading::parse(&name).unit.is_none();
+        let called = Some(&*remark).filter(|_| Heading::parse(&name).unit.is_none()).and_then(|r| measures(&name, r));
+        let unit = called.is_some();
         special |= more > 0 || unit;
-        let row = values.join("\t");
-        found.push(if unit { format!("{name} ({remark})\t{row}") } else { format!("{name}\t{row}") });
+        found.push(format!("{}\t{}", called.unwrap_or(name), values.join("\t")));
         found.extend(std::iter::repeat_n(String::new(), more));
         // Any other remark is kept, in a line that the list leaves.
         if !unit && !remark.is_empty() {
@@ -221,6 +221,24 @@ pub(super) fn scripted(text: &str) -> Option<String> {
         }
     }
     (special && lists > 0).then(|| found.join("\n") + "\n")
+}
+
+/// What a list of this name holds by the remark behind it: its unit, and what is measured where
+/// the remark says that too, `m, distance from the sensor`.
+fn measures(name: &str, remark: &str) -> Option<String> {
+    let said = Heading::parse(remark);
+    if Unit::parse(remark).is_none()
+        && said.unit.is_some()
+        && said.understood()
+        && said.value().is_some_and(|value| value.what != What::Unsaid)
+    {
+        return Some(remark.to_owned());
+    }
+    let (unit, words) = remark.split_once(", ").unwrap_or((remark, ""));
+    Unit::parse(unit)?;
+    let said = Heading::parse(words);
+    let says = said.understood() && said.value().is_some_and(|value| value.what != What::Unsaid);
+    Some(format!("{} ({unit})", if says { words } else { name }))
 }
 
 /// A line of a script without the remark at its end, and that.

@@ -268,6 +268,12 @@ pub(super) fn both(upper: &[String], lower: &[String]) -> Option<Vec<String>> {
             .all(|n| cell(lower, n).is_empty() || !cell(upper, n).is_empty())
             .then(|| (0..width).map(name).collect());
     }
+    // A name and its value above the first of several names are of the file: `MARKER_NAMES ball`.
+    let filled = |line: &[String]| line.iter().filter(|cell| !cell.is_empty()).count();
+    let named = !cell(upper, 0).is_empty() && !cell(upper, 1).is_empty() && !cell(lower, 0).is_empty();
+    if filled(upper) == 2 && filled(lower) > 2 && named {
+        return None;
+    }
     // A name that ends in a colon has its value beside it.
     if upper.windows(2).any(|pair| pair[0].ends_with(':') && !pair[1].is_empty()) {
         return None;

@@ -20,7 +20,7 @@ impl Legend {
         let edges = (0..grid.rows()).filter(|row| *row < ROWS || row + ROWS >= grid.rows());
         let cells = edges.flat_map(|row| (0..grid.width(row)).map(move |n| grid.cell(row, n)));
         let comments = grid.comments().take(ROWS).map(|(_, text)| text);
-        let lines = cells.chain(comments).filter(|text| text.contains(['=', ':']));
+        let lines = cells.chain(comments).filter(|text| MARKS.iter().any(|mark| text.contains(mark)));
         Self(lines.flat_map(clauses).filter_map(stated).collect())
     }
 
@@ -48,9 +48,12 @@ impl Legend {
     }
 }
 
+/// What stands between a sign and its words.
+const MARKS: [&str; 4] = ["=", ":", " – ", " - "];
+
 /// A sign and the words that a clause gives it, which say what it measures.
 fn stated(clause: &str) -> Option<(String, String)> {
-    let (sign, words) = clause.split_once(['=', ':'])?;
+    let (sign, words) = MARKS.iter().find_map(|mark| clause.split_once(mark))?;
     let sign = sign.trim_matches(|c: char| c.is_whitespace() || matches!(c, '%' | '#' | '*' | '-' | '('));
     if !is_sign(sign) {
         return None;
@@ -101,6 +104,7 @@ mod tests {
             ("D = wobble (cm)", None),
             ("Height: rebound height (cm)", None),
             ("d = diameter", None),
+            ("t – time between the bounces", Some(("t", "time between the bounces"))),
             ("t = time between the bounces", Some(("t", "time between the bounces"))),
         ] {
             let expected = expected.map(|(sign, words)| (sign.to_owned(), words.to_owned()));
