@@ -251,6 +251,45 @@ proptest! {
     }
 }
 
+/// What was aimed at and stands behind its name is none of the readings; what the name is of is.
+#[test]
+fn an_aim_that_stands_by_itself_is_no_reading() {
+    let rows = lines((0..6).map(|n| format!("{},{:.1}", 50 + 20 * n, (50 + 20 * n) as f64 * 0.64 + 0.3 * off(n))));
+    for aim in ["Allowed: 30 to 34 inches. Room 72 F", "target: rigid steel plate", "Required: COR 0.75 to 0.85"] {
+        assert!((trusted(&format!("Ball lot 7\n{aim}\ndrop (cm),rebound (cm)\n{rows}")) - 0.8).abs() < 0.02, "{aim}");
+    }
+    let report = fit(&format!("Target: rebound heights\ndrop (cm),rebound (cm)\n{rows}"));
+    assert_ne!(report.verdict(), Verdict::Trusted, "{report}");
+}
+
+/// Labels that count the contacts of each ball, signs of flights by their contacts, and pixels in
+/// any language.
+#[test]
+fn names_count_contacts_and_flights() {
+    let times = |from: f64, e: f64| contacts(e, 6).into_iter().map(move |t| t + from);
+    let labels = |name: &'static str, from: f64, e: f64| {
+        times(from, e).zip(1..).map(move |(t, n)| format!("{t:.4}\t{t:.4}\t{name} {n}"))
+    };
+    let report = fit(&lines(labels("golf", 1.0, 0.85).chain(labels("tennis", 9.0, 0.7))));
+    let cors: Vec<f64> = report.groups().iter().filter_map(|g| Some(g.report.cor()?.value)).collect();
+    let near = |e: f64| cors.iter().any(|cor| (cor - e).abs() < 0.01);
+    let pooled = report.series().is_empty() && report.cor().is_some();
+    assert!(pooled || cors.len() == 2 && near(0.85) && near(0.7), "{report}");
+
+    let fall = |h: f64| 2.0 * (2.0 * h / 9.81_f64).sqrt();
+    let row = |n: usize| {
+        let h = 0.2 + 0.1 * n as f64;
+        format!("{h:.2},{:.3},{:.3}", 0.8 * fall(h) + 0.002 * off(n), 0.64 * fall(h) + 0.002 * off(n + 5))
+    };
+    assert!((trusted(&format!("drop_height_m,t12_s,t23_s\n{}", lines((0..8).map(row)))) - 0.8).abs() < 0.02);
+
+    for unit in ["пикс", "像素", "píxeles", "pikseli"] {
+        let row = |n: usize| format!("{n};{:.3};{:.0}", n as f64 / 60.0, 900.0 - 600.0 * height(0.8, n as f64 / 60.0));
+        let text = format!("n;t (s);y, {unit}\n{}", lines((0..120).map(row)));
+        assert!((trusted(&text) - 0.8).abs() < 0.02, "{text}");
+    }
+}
+
 /// A title ends in what it says of all readings, whatever it says of the ball before a dash and of
 /// the recording behind a comma.
 #[test]

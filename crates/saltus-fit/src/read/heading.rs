@@ -1,6 +1,7 @@
 //! What a heading means: a quantity, its unit, a statistic, the number of a bounce, a trial, a
 //! ball, and the words that are not understood.
 
+mod flights;
 mod inside;
 mod kept;
 mod meaning;

@@ -195,11 +195,13 @@ fn of_drops(view: View<'_>, rows: &[usize]) -> Vec<(String, Vec<usize>)> {
         let heading = Heading::parse(text);
         heading.unknown.is_empty() && (heading.has(Atom::Impact) || heading.has(Atom::Rebound))
     };
-    // `drop 2 hit 1`, `drop2 hit1`, `marble hit 3`.
+    // `drop 2 hit 1`, `drop2 hit1`, `marble hit 3`, `marble 3`.
+    let counted = |rest: &str| rest.trim().parse::<usize>().is_ok();
     let name = |row: &usize| {
         let text = view.cell(*row, 2);
         let mut ends = text.match_indices(' ').map(|(at, _)| text.split_at(at));
-        ends.find(|(name, rest)| contact(rest) && !contact(name)).map(|(name, _)| name.to_owned())
+        let named = ends.find(|(name, rest)| (contact(rest) || counted(rest)) && !contact(name));
+        named.map(|(name, _)| name.to_owned())
     };
     let Some(names) = rows.iter().map(name).collect::<Option<Vec<String>>>() else { return Vec::new() };
     let mut found: Vec<(String, Vec<usize>)> = Vec::new();

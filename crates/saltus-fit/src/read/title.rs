@@ -252,7 +252,15 @@ pub(super) fn doubted(region: &Region<'_>, table: &mut Table) {
         |value: &str| Heading::parse(value).turned_by().iter().any(|a| matches!(a, Atom::Predicted | Atom::Goal));
     // What a sensor shows may be in any unit, `Normalized force`: its times are what they are.
     let felt = table.notes.iter().any(|note| matches!(note.kind, Note::Felt { .. }));
-    let tells = |text: &str| turned(text) && (!felt || wanted(text));
+    // What was aimed at, and stands behind its name itself, is none of the readings.
+    let aimed = |text: &str| {
+        text.split_once(':').is_some_and(|(name, aim)| {
+            let by = Heading::parse(name).turned_by();
+            let stated = aim.contains(|c: char| c.is_ascii_digit()) || !Heading::parse(aim).names_anything();
+            by == [Atom::Goal] && stated
+        })
+    };
+    let tells = |text: &str| turned(text) && (!felt || wanted(text)) && !aimed(text);
     let titles = |aside: &&LeftAside| match row(aside) {
         Some([name, value]) => tells(&name) || turned(&value) && wanted(&value),
         None => tells(&aside.name),

@@ -121,7 +121,8 @@ impl Columns {
             unscaled: false,
         };
         for (index, text) in region.header.iter().enumerate() {
-            let told = Heading::coordinate(text, &region.header).or_else(|| Heading::initial(text, &region.header));
+            let told = Heading::coordinate(text, &region.header).or_else(|| Heading::flight(text, &region.header));
+            let told = told.or_else(|| Heading::initial(text, &region.header));
             let heading = told.unwrap_or_else(|| Heading::parse(text));
             found.push(if heading.unit.is_none() && of_hundredths(region, index) {
                 heading.hundredths()
