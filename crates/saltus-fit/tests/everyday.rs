@@ -234,6 +234,28 @@ proptest! {
         prop_assert!((trusted(&text) - e).abs() < 0.02, "{}", text);
     }
 
+    /// A COR that changes from bounce to bounce by less than what may be called one is one, however
+    /// surely it does, and the interval takes in both ends; by more it is doubted.
+    #[test]
+    fn a_cor_may_change_a_little_from_bounce_to_bounce(e in 0.7f64..0.85, form in any::<bool>()) {
+        let changes = if form { 0.010 } else { 0.09 };
+        let cor = |n: i32| e - changes * f64::from(n) / 7.0;
+        let flights = (1..8).scan(0.7, |flight, n| {
+            *flight *= cor(n);
+            Some(*flight)
+        });
+        let times = std::iter::once(0.7).chain(flights).scan(0.45, |t, flight| {
+            let at = *t;
+            *t += flight;
+            Some(at)
+        });
+        let report = fit(&format!("Ball on wood\ntime of impact (s)\n{}", lines(times.map(|t| format!("{t:.4}")))));
+        let trends = report.findings().iter().any(|f| matches!(f.kind, FindingKind::Trend { .. }));
+        prop_assert!((report.verdict() == Verdict::Trusted) == form && (trends || !form), "{}", report);
+        let found = report.cor().unwrap();
+        prop_assert!(!form || found.low < cor(7) + 2e-3 && cor(1) - 2e-3 < found.high, "{}", report);
+    }
+
     /// A COR that changes from drop to drop by less than what may be called one is one, and the
     /// interval takes in both ends; by more it is doubted.
     #[test]

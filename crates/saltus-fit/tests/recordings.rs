@@ -281,7 +281,7 @@ fn rounded_times_of_frames_are_restored() {
 fn where_the_error_of_reading_decides_it_is_said() {
     let mut noise = Noise(8);
     let mut turned = 0;
-    for _ in 0..60 {
+    for _ in 0..120 {
         let (mut t, mut lasts, mut text) = (0.6, 0.96, "time_s\n".to_owned());
         for _ in 0..12 {
             text += &format!("{:.4}\n", t + noise.normal(0.003));

@@ -1,15 +1,15 @@
 //! Heights and times: do they agree, and do their readings bear a COR at all?
 
-use super::judgement::{Cor, Judgement};
+use super::judgement::{Cor, Judgement, LEVEL};
 use super::single::single;
 use crate::compare::explain::Agreement;
 use crate::elementary::{exp, hypot};
 use crate::evidence::{at, has};
-use crate::finding::{Basis, By, Finding, FindingKind};
-use crate::quantity::{Method, Readings, Source, Sourced};
+use crate::finding::{Basis, By, Finding, FindingKind, Severity, Widening};
+use crate::quantity::{Measured, Method, Readings, Source, Sourced};
 use crate::read::{Event, Reading};
 use crate::solve::fits::Fits;
-use crate::statistics::{FAR as OUT, SURELY};
+use crate::statistics::{FAR as OUT, Line, SURELY};
 
 /// Times that do not follow from the others are a doubt if there is one for fewer than so many that
 /// do.
@@ -48,6 +48,24 @@ pub(crate) fn judge(judgement: &mut Judgement, fits: &Fits<'_>, agreement: Optio
             judgement.doubt(FindingKind::FirstFlightAlone);
         }
         (None, None) => none(judgement, fits),
+    }
+    small_trend(judgement, fits);
+}
+
+/// A COR that changes by little from flight to flight may be called one: the trend is worth a word,
+/// and the interval takes in both ends of it. What a trend of heights comes of, the comparison of
+/// models says.
+fn small_trend(judgement: &mut Judgement, fits: &Fits<'_>) {
+    let cors = fits.bounces.iter().filter_map(|bounce| Some((bounce.bounce as f64, bounce.times?)));
+    let cors: Vec<(f64, Measured)> = cors.collect();
+    let trend = |f: &&mut Finding| matches!(f.kind, FindingKind::Trend { .. }) && f.severity == Severity::Doubt;
+    let (Some(first), Some(last), None) = (cors.first(), cors.last(), &fits.heights) else { return };
+    let Some(found) = judgement.findings.iter_mut().find(trend) else { return };
+    let line = Line::through(cors.iter().map(|(n, cor)| (cor.standard_error.powi(-2), *n, cor.value)));
+    let (first, last) = (line.at(first.0), line.at(last.0));
+    if (last - first).abs() <= LEVEL {
+        found.severity = Severity::Note;
+        judgement.reach(first.min(last), first.max(last), Widening::EveryImpact);
     }
 }
 
