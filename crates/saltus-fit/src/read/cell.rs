@@ -3,7 +3,7 @@
 
 use super::phrases::Phrase;
 use super::units::{Dimension, Scale, Unit};
-use super::vocabulary::{Atom, folded, meanings};
+use super::vocabulary::{Atom, SPREAD, folded, meanings};
 
 /// A number in a cell.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -207,7 +207,7 @@ fn without_about(text: &str) -> &str {
 }
 
 fn split_error(text: &str) -> Option<(&str, &str)> {
-    ["±", "+/-", "+-", "+/−"].iter().find_map(|mark| text.split_once(mark)).map(|(a, b)| (a.trim(), b))
+    SPREAD.iter().find_map(|mark| text.split_once(mark)).map(|(a, b)| (a.trim(), b))
 }
 
 /// One number, or several with falling units that add up: `5' 3"`, `1 m 20 cm`; `None` if it is

@@ -342,6 +342,9 @@ pub(super) fn first_word(text: &str) -> Option<&str> {
     ends.find(|&end| meanings(&text[..end]).is_some()).map(|end| &text[..end])
 }
 
+/// The signs that an error stands behind.
+pub(super) const SPREAD: [&str; 4] = ["±", "+/-", "+/−", "+-"];
+
 /// A text whose letters, digits and signs of full width, as East Asian keyboards write them, are
 /// the plain ones, and whose signs of an error, `+/-`, are one.
 pub(super) fn narrow(text: &str) -> String {
@@ -353,7 +356,7 @@ pub(super) fn narrow(text: &str) -> String {
         c => c,
     };
     let text: String = text.chars().map(plain).collect();
-    ["+/-", "+/−", "+-"].iter().fold(text, |text, sign| text.replace(sign, "±"))
+    SPREAD[1..].iter().fold(text, |text, sign| text.replace(sign, SPREAD[0]))
 }
 
 /// Whether a letter is of a script that parts no words by blanks.

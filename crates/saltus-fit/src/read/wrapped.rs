@@ -240,11 +240,16 @@ fn sent(text: &str) -> Option<String> {
     // Before the first of them a device may tell what it is.
     let first = text.lines().position(|line| reading(line).is_some())?;
     let (heading, _) = text.lines().nth(first).and_then(reading)?;
-    let alike = |line: &str| reading(line).is_some_and(|(name, _)| name == heading);
-    let lost = |line: &str| stamped(line).is_some_and(|stamp| !stamp.said.contains(|c: char| c.is_ascii_digit()));
-    let below = || text.lines().skip(first).filter(|line| !line.trim().is_empty());
-    let read = below().filter(|line| alike(line)).count();
-    if !below().all(|line| alike(line) || lost(line)) || read < 3 || 2 * read < below().count() {
+    let wordy = |line: &str| stamped(line).is_some_and(|stamp| !stamp.said.contains(|c: char| c.is_ascii_digit()));
+    let (mut read, mut lost) = (0, 0);
+    for line in text.lines().skip(first).filter(|line| !line.trim().is_empty()) {
+        match reading(line) {
+            Some((name, _)) if name == heading => read += 1,
+            None if wordy(line) => lost += 1,
+            _ => return None,
+        }
+    }
+    if read < 3 || read < lost {
         return None;
     }
     let row = |line: &str| match reading(line) {

@@ -181,18 +181,19 @@ pub(in crate::read) fn falling(region: &Region<'_>, nth: &[usize]) -> bool {
     nth.windows(2).all(|pair| parts(region, pair[0], pair[1]).iter().all(|part| *part < 1.0))
 }
 
-/// What part of the height in column `a` the one in column `b` is, row by row, each in its unit; a
-/// flight of T rises g T²/8.
+/// What part of the height in column `a` the one in column `b` is, row by row, each in its unit
+/// where both have one; a flight of T rises g T²/8.
 fn parts(region: &Region<'_>, a: usize, b: usize) -> Vec<f64> {
     let unit = |n: usize| region.header.get(n).and_then(|name| Heading::parse(name).unit);
-    let units = unit(a).zip(unit(b));
-    let height = |n: usize, row: usize| {
-        let value =
-            unit(n).filter(|_| units.is_some()).map_or(1.0, |unit| unit.si(1.0)) * region.view.number(row, n)?;
-        let timed = unit(n).is_some_and(|unit| unit.dimension == Dimension::Time);
-        Some(if timed { STANDARD_GRAVITY * value * value / 8.0 } else { value })
+    let (of_a, of_b) = unit(a).zip(unit(b)).unzip();
+    let height = |unit: Option<Unit>, value: f64| match unit {
+        Some(unit) if unit.dimension == Dimension::Time => STANDARD_GRAVITY * unit.si(value).powi(2) / 8.0,
+        Some(unit) => unit.si(value),
+        None => value,
     };
-    region.rows.iter().filter_map(|&row| Some(height(b, row)? / height(a, row)?)).collect()
+    let part =
+        |&row: &usize| Some(height(of_b, region.view.number(row, b)?) / height(of_a, region.view.number(row, a)?));
+    region.rows.iter().filter_map(part).collect()
 }
 
 /// Whether heights side by side that look level are as well those of bounces that lose as little:

@@ -226,19 +226,14 @@ pub(super) fn scripted(text: &str) -> Option<String> {
 /// What a list of this name holds by the remark behind it: its unit, and what is measured where
 /// the remark says that too, `m, distance from the sensor`.
 fn measures(name: &str, remark: &str) -> Option<String> {
+    let says = |said: &Heading| said.understood() && said.value().is_some_and(|value| value.what != What::Unsaid);
     let said = Heading::parse(remark);
-    if Unit::parse(remark).is_none()
-        && said.unit.is_some()
-        && said.understood()
-        && said.value().is_some_and(|value| value.what != What::Unsaid)
-    {
+    if Unit::parse(remark).is_none() && said.unit.is_some() && says(&said) {
         return Some(remark.to_owned());
     }
     let (unit, words) = remark.split_once(", ").unwrap_or((remark, ""));
     Unit::parse(unit)?;
-    let said = Heading::parse(words);
-    let says = said.understood() && said.value().is_some_and(|value| value.what != What::Unsaid);
-    Some(format!("{} ({unit})", if says { words } else { name }))
+    Some(format!("{} ({unit})", if says(&Heading::parse(words)) { words } else { name }))
 }
 
 /// A line of a script without the remark at its end, and that.
