@@ -54,7 +54,7 @@ pub(crate) struct Simulate {
     /// text.
     #[arg(long, value_enum)]
     pub(crate) format: Option<MotionFormat>,
-    /// Write the motion to a file; `-` for standard output.
+    /// Write the motion to a file, anew where it exists; `-` for standard output.
     #[arg(long, short, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
     /// Draw the motion as SVG; `-o FILE.svg` does so too and writes nothing else; `-` draws to

@@ -45,8 +45,8 @@ mod word;
 pub use compare::explain::{Agreement, Conflict, Generous, Hypothesis, ImpliedGravity, TotalTime};
 pub use error::{FitError, TableError};
 pub use finding::{
-    Air, At, Basis, By, Cause, Doubt, Finding, FindingKind, Gives, Lines, Missing, Named, Need, Note, Pace, Parts,
-    Program, Remark, Repair, Severity, Shape, Spot, Untried, Warning, Widening,
+    Air, At, Basis, By, Cause, Change, Doubt, Finding, FindingKind, Gives, Lines, Missing, Named, Need, Note, Pace,
+    Parts, Program, Remark, Repair, Severity, Shape, Spot, Untried, Warning, Widening,
 };
 pub use fit::Fit;
 pub use plan::Expected;

@@ -26,6 +26,7 @@ fn files() -> Vec<PathBuf> {
     ]
     .into_iter()
     .chain([
+        "read/alarms.rs",
         "read/said.rs",
         "read/words.rs",
         "read/forms.rs",
@@ -46,6 +47,7 @@ fn files() -> Vec<PathBuf> {
         "read/sensed.rs",
         "read/sequence.rs",
         "read/heading/inside.rs",
+        "read/phrases.rs",
         "read/programs.rs",
         "read/title.rs",
         "sound/onset.rs",

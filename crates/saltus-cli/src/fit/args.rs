@@ -76,7 +76,7 @@ pub(crate) struct Fit {
     /// How to write the report, or why there is none; docs/use/fitting.md describes the JSON.
     #[arg(long, value_enum, default_value_t)]
     pub(crate) format: ReportFormat,
-    /// Write the report to a file; `-` for standard output.
+    /// Write the report to a file, anew where it exists; `-` for standard output.
     #[arg(long, short, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
     /// The standard error of a height reading, such as `5mm`.

@@ -2,6 +2,36 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::word::words;
+
+words! {
+    /// What a remark changes of what the readings beside it mean.
+    pub enum Change {
+        /// The ball was not simply let go.
+        Thrown = "thrown",
+        /// It flew through something else than air, or met another floor than a level one at rest.
+        Medium = "medium",
+        /// Not every bounce is there.
+        Counted = "counted",
+        /// Readings are off, and were not corrected.
+        Shifted = "shifted",
+        /// Readings are not to be used.
+        Void = "void",
+        /// Numbers were not measured.
+        Unread = "unread",
+        /// A clock went slower or faster.
+        Clock = "clock",
+        /// Rows are in another order than that of bounces.
+        Order = "order",
+        /// The ball, or the floor, was another from some reading on.
+        Changed = "changed",
+        /// Whoever read them is not sure of them.
+        Unsure = "unsure",
+        /// So much of the remark is not understood that it may change anything.
+        Unclear = "unclear",
+    }
+}
+
 /// What speaks against trusting the readings, as far as the file tells.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
@@ -87,6 +117,21 @@ pub enum Doubt {
         contacts: usize,
         /// Chance makes such a sound once in so many recordings like this.
         once_in: u64,
+    },
+    /// A remark changes what the readings mean.
+    Remark {
+        /// The remark.
+        text: String,
+        /// Its line, where it has one.
+        line: Option<u64>,
+        /// What it changes.
+        change: Change,
+    },
+    /// Speeds stand beside the angles of their paths: of an oblique bounce the COR is of the
+    /// components across the floor.
+    Oblique {
+        /// The column of the angles.
+        column: String,
     },
     /// The COR follows from the time until the ball rests, and the last contacts are not those of a
     /// ball in flight.

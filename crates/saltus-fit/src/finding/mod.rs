@@ -10,7 +10,7 @@ mod remark;
 use serde::{Deserialize, Serialize};
 
 pub use detail::{Air, Basis, By, Cause, Gives, Missing, Need, Untried, Widening};
-pub use doubt::Doubt;
+pub use doubt::{Change, Doubt};
 pub use kind::FindingKind;
 pub use place::{Lines, Spot};
 pub use remark::{Named, Note, Pace, Parts, Program, Remark, Repair, Shape, Warning};

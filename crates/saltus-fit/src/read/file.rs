@@ -3,6 +3,7 @@
 
 use saltus_bounce::units::Quantity;
 
+use super::alarms;
 use super::aside::{LeftAside, Part as Kind, Why};
 use super::clause;
 use super::columns::Columns;
@@ -123,8 +124,8 @@ fn joined_up<'a>(
     }
     filmed(&mut regions, metadata.frame_rate);
     let (mut parts, mut failed, mut nothing, mut aside) = (Vec::new(), None, None, Vec::new());
-    for (n, region) in regions.iter_mut().enumerate() {
-        let title = &titles[n];
+    for n in 0..regions.len() {
+        let (region, title) = (&mut regions[n], &titles[n]);
         let own = Metadata {
             drop: metadata.drop.or(title.drop.as_ref().map(|(drop, _)| drop.metres())).or(metadata.noted),
             sigma_height: metadata.sigma_height.or(title.sigma.0),
@@ -146,13 +147,16 @@ fn joined_up<'a>(
                 let placed = !table.metadata.speeds && table.trials.iter().any(|t| t.readings.iter().any(placed));
                 table.doubts.extend(datum.filter(|_| placed).and_then(Datum::doubt));
                 table.doubts.extend(title::unmet(title, &table).filter(|_| !answered && placed));
-                parts.push((region.label.clone(), table));
+                let others: Vec<&Region<'_>> =
+                    regions.iter().enumerate().filter(|(m, _)| *m != n).map(|(_, r)| r).collect();
+                table.doubts.extend(alarms::doubt(&regions[n], &table, &others));
+                parts.push((regions[n].label.clone(), table));
             }
             // A table beside another, of something else.
-            Err(error) if n > 0 && error.is_of_nothing() || !measures(region) => {
-                let text = region.header.join(" ");
+            Err(error) if n > 0 && error.is_of_nothing() || !measures(&regions[n]) => {
+                let text = regions[n].header.join(" ");
                 let left = LeftAside::new(Kind::Text, super::grid::shown(&text), Why::NoTable);
-                aside.push(left.at(grid.line(region.header_row)));
+                aside.push(left.at(grid.line(regions[n].header_row)));
                 nothing = nothing.or(Some(error));
             }
             Err(error) => failed = failed.or(Some(error)),
@@ -182,6 +186,7 @@ fn joined_up<'a>(
         table.left_aside.extend(still.iter().map(named));
         table.notes.push(Note::Still { tracks: still }.into());
     }
+    alarms::leave(&mut table);
     Ok(table)
 }
 
@@ -240,6 +245,7 @@ fn bounces(region: &mut Region<'_>, options: &ReadOptions, metadata: Metadata) -
         said::of_another_motion(region, &columns),
         said::rival(region, &columns, options),
         said::of_two_ends(&columns),
+        said::oblique(&columns),
         said::repeated(region, &columns),
     ];
     let frame_rate = metadata.frame_rate.or(any).filter(|rate| *rate <= FILMED);
@@ -328,6 +334,7 @@ fn sheets(name: &str, parts: Vec<Part>, options: &ReadOptions) -> Result<Table, 
             Some(_) => Some(Why::NotChosen),
             None if part.aside.is_some() => part.aside,
             None if title::names_no_readings(&label) => Some(Why::Predicted),
+            None if alarms::named(&label).is_some() => alarms::named(&label),
             None if all && stem(&label) != "All" => Some(Why::Elsewhere),
             // What phyphox tells of the telephone, and of its clock.
             None if matches!(stem(&label), "Metadata Device" | "Metadata Time") => Some(Why::NoTable),
@@ -358,11 +365,13 @@ fn sheets(name: &str, parts: Vec<Part>, options: &ReadOptions) -> Result<Table, 
         }
     }
     if found.is_empty() {
-        let unread = aside.iter().find(|(_, why)| *why == Why::Predicted);
+        let unread = aside.iter().find(|(_, why)| matches!(why, Why::Predicted | Why::Void));
         let none = || match unread {
-            Some((label, _)) => TableError::new(name, format!("the sheet '{label}' is of what was not measured"))
-                .question()
-                .help(format!("give --sheet '{label}' if its heights or times were read")),
+            Some((label, _)) => {
+                TableError::new(name, format!("the sheet '{label}' is of what was not measured, or not to be used"))
+                    .question()
+                    .help(format!("give --sheet '{label}' if its heights or times were read"))
+            }
             None => TableError::new(name, "there is no such sheet, or none at all")
                 .help(format!("the file has {}", known.join(", "))),
         };
@@ -382,6 +391,7 @@ fn sheets(name: &str, parts: Vec<Part>, options: &ReadOptions) -> Result<Table, 
         table.notes.insert(1, Note::SheetsAside { sheets }.into());
     }
     table.left_aside.extend(aside.into_iter().map(|(label, why)| LeftAside::new(Kind::Sheet, label, why)));
+    alarms::leave(&mut table);
     Ok(table)
 }
 

@@ -20,7 +20,8 @@ use std::collections::HashMap;
 pub(super) use blocks::bulleted;
 use parts::{Part, arrows, parts};
 pub(super) use printed::{dumped, indexed};
-use values::{LIST, listed_numbers, listed_values, named_list, of_one_unit, risen, titled};
+pub(super) use values::named_list;
+use values::{LIST, listed_numbers, listed_values, of_one_unit, risen, titled};
 
 use super::cell::{self, Cell, length};
 use super::clause;

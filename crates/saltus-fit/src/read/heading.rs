@@ -460,6 +460,13 @@ impl Heading {
                 || inside::of_units(inside)
                 || inside::asks_for_unit(inside))
             {
+                // Feet, a point, inches are no number of either.
+                let parts = inside.split_once('.').filter(|(one, other)| !one.is_empty() && !other.is_empty());
+                let dimension = |unit: &str| Unit::parse(unit).map(|unit| unit.dimension);
+                if parts.is_some_and(|(one, other)| dimension(one).is_some() && dimension(one) == dimension(other)) {
+                    left.push_str(&inside.replace('.', ""));
+                    continue;
+                }
                 // A symbol behind a name is what the name is, and names nothing itself: `drop [H]`.
                 match inside {
                     "h" | "H" if !left.trim().is_empty() => left.push_str("height"),

@@ -1,5 +1,6 @@
 //! Tables of measured bounces: releases, contacts and apexes, by trial, in SI units.
 
+mod alarms;
 mod answers;
 mod aside;
 mod assemble;
@@ -31,6 +32,7 @@ mod phrases;
 mod pool;
 mod programs;
 mod region;
+mod remarks;
 mod roles;
 mod rows;
 mod said;

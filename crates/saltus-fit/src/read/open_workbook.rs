@@ -53,8 +53,9 @@ struct Book {
     cells: Vec<(u32, String)>,
     rows: u32,
     cell: Option<Cell>,
-    /// How deep within remarks, which are no part of their cells.
+    /// How deep within remarks, which are no part of their cells, and the texts of those.
     remark: usize,
+    remarks: Vec<String>,
     /// What the cells of the row may hold, and what those of the sheets may.
     held: usize,
     left: usize,
@@ -77,15 +78,20 @@ impl Book {
                 self.held = limits::bytes();
             }
             "table-cell" | "covered-table-cell" => self.cell = Some(Cell::new(tag)),
-            "annotation" => self.remark += 1,
+            "annotation" => {
+                self.remark += 1;
+                self.remarks.push(String::new());
+            }
             "p" | "s" | "tab" | "line-break" => self.text(" "),
             _ => {}
         }
     }
 
     fn text(&mut self, words: &str) {
-        if let Some(cell) = self.cell.as_mut().filter(|_| self.remark == 0) {
-            cell.text.push_str(words);
+        match (self.remark, &mut self.cell, self.remarks.last_mut()) {
+            (0, Some(cell), _) => cell.text.push_str(words),
+            (1.., _, Some(remark)) => remark.push_str(words),
+            _ => {}
         }
     }
 
@@ -114,7 +120,10 @@ impl Book {
                 }
             }
             "table" => {
-                if let Some((name, hidden, rows)) = self.sheet.take() {
+                if let Some((name, hidden, mut rows)) = self.sheet.take() {
+                    for remark in std::mem::take(&mut self.remarks) {
+                        rows.remark(remark.trim())?;
+                    }
                     self.left = rows.left;
                     self.parts.push(Part {
                         name,

@@ -106,10 +106,18 @@ pub(super) enum Phrase {
     Shown,
     /// What a sensor shows that does not feel the floor.
     Unfelt,
+    /// Before what something is higher than.
+    Above,
+    /// What a unit of all lengths is stated of.
+    Lengths,
+    /// Which way something flies.
+    Angle,
+    /// There is none of what follows.
+    Nothing,
 }
 
 impl Phrase {
-    const ALL: [(&'static str, Self); 49] = [
+    const ALL: [(&'static str, Self); 53] = [
         ("missing", Self::Missing),
         ("about", Self::About),
         ("half", Self::Half),
@@ -159,6 +167,10 @@ impl Phrase {
         ("ranging", Self::Ranging),
         ("shown", Self::Shown),
         ("unfelt", Self::Unfelt),
+        ("above", Self::Above),
+        ("lengths", Self::Lengths),
+        ("angle", Self::Angle),
+        ("nothing", Self::Nothing),
     ];
 
     /// The phrases of this kind, in the order of the file.
@@ -179,6 +191,14 @@ impl Phrase {
     pub(super) fn is(self, text: &str) -> bool {
         self.all().contains(&text)
     }
+}
+
+/// A word that denies is among so many before what it denies: `was not simply thrown`.
+pub(super) const DENIED: usize = 3;
+
+/// Whether a word denies what stands behind it.
+pub(super) fn denies(word: &str) -> bool {
+    Phrase::Not.is(word) || Phrase::Nothing.is(word)
 }
 
 fn entries() -> impl Iterator<Item = (&'static str, &'static str)> {

@@ -8,8 +8,8 @@ use super::cell::Cell;
 use super::clause;
 use super::columns::{Column, Columns, Kind as Of};
 use super::grid::shown;
-use super::heading::{At, DropHeight, Heading, Role, Value, What};
-use super::phrases::Phrase;
+use super::heading::{At, DropHeight, Heading, Role, Value, What, is_sign};
+use super::phrases::{DENIED, Phrase, denies};
 use super::region::Region;
 use super::units::{Dimension, Scale};
 use super::vocabulary::{Atom, ROWS, folded, misspelt};
@@ -86,7 +86,7 @@ fn hits_floor(text: &str) -> bool {
 }
 
 /// The name of a file without its folder and ending.
-fn stem(name: &str) -> &str {
+pub(super) fn stem(name: &str) -> &str {
     let file = name.rsplit(['/', '\\']).next().unwrap_or(name);
     file.split('.').next().unwrap_or(file)
 }
@@ -111,7 +111,11 @@ pub(super) fn of_another_motion(region: &Region<'_>, columns: &Columns) -> Optio
     if turned_round(region, columns) && texts(region).any(names_wall) {
         return None;
     }
-    let other = |text: &&str| split(text).iter().any(|word| word.is(Atom::Motion));
+    let other = |text: &&str| {
+        let words = split(text);
+        let denied = |at: usize| words[at.saturating_sub(DENIED)..at].iter().any(|word| denies(&folded(&word.text)));
+        (0..words.len()).any(|at| words[at].is(Atom::Motion) && !denied(at))
+    };
     texts(region).find(other).map(|text| Doubt::Motion { text: shown(text) })
 }
 
@@ -315,9 +319,11 @@ fn plain(heading: &Heading) -> bool {
     of_bounces || heading.has(Atom::Read) || words.iter().all(bare)
 }
 
-/// The doubt whether the heights are those that were read, where they are not plainly the heights,
-/// and a column that is not understood is called one too, or rises and falls with them from row to
-/// row and says something else; `--column` answers it.
+/// The doubt whether the readings are those that were read, where a column that is not understood
+/// names what they do, a rebound or a speed; or where they are not plainly heights, and one is
+/// called so too, or rises and falls with them from row to row and says something else; `--column`
+/// answers it. So may a coordinate beside another, where no clock makes a track of them: signs alone
+/// do not tell which is the height.
 pub(super) fn rival(region: &Region<'_>, columns: &Columns, options: &ReadOptions) -> Option<Doubt> {
     if options.column.is_some() || region.given || region.chosen {
         return None;
@@ -326,14 +332,23 @@ pub(super) fn rival(region: &Region<'_>, columns: &Columns, options: &ReadOption
         Cell::Number(m) => Some(m.unit.or(columns.columns[n].unit).map_or(m.value, |unit| unit.si(m.value))),
         _ => None,
     };
-    let length = |c: &Column| c.unit.is_none_or(|unit| unit.dimension == Dimension::Length);
+    let dimension = |c: &Column| c.unit.map(|unit| unit.dimension);
+    let sign = |c: &Column| is_sign(c.heading.text.split(['(', '[']).next().unwrap_or_default().trim());
+    let tracked = columns.any(What::Time, Some(At::Row)) || columns.columns.iter().any(|c| c.kind == Of::Frame);
     let unknown = |c: &Column| {
-        c.kind == Of::Aside && !c.heading.unknown.is_empty() && !c.heading.turns() && c.heading.value().is_some()
+        let named = !c.heading.unknown.is_empty() && c.heading.value().is_some();
+        c.kind == Of::Aside && !c.heading.turns() && (named || !tracked && sign(c))
     };
-    let aside = columns.columns.iter().enumerate().filter(|(_, c)| unknown(c) && length(c));
-    let read = |v: &Value| v.what == What::Height && v.role == Role::Reading && v.at != At::Release && !v.position;
+    let aside = columns.columns.iter().enumerate().filter(|(_, c)| unknown(c));
+    let high = |v: &Value| v.what == What::Height && v.at != At::Release && !(v.position && tracked);
+    let read = |v: &Value| v.role == Role::Reading && (high(v) || v.what == What::Speed);
     let with = |(n, column): &(usize, &Column)| {
-        columns.values().filter(|(_, c, v)| read(v) && !plain(&c.heading)).find(|(of, _, _)| {
+        let one = |c: &Column| dimension(column).is_none_or(|own| dimension(c).is_none_or(|other| own == other));
+        columns.values().filter(|(_, c, v)| read(v) && one(c)).find(|(of, c, v)| {
+            let named = [Atom::Rebound, Atom::Speed].iter().any(|a| column.heading.has(*a) && c.heading.has(*a));
+            if named || plain(&c.heading) || v.what != What::Height {
+                return named;
+            }
             // `Ceiling height` beside `Light height`: named alike.
             if column.heading.has(Atom::Height) {
                 return true;
@@ -377,6 +392,14 @@ pub(super) fn mixed_units(region: &Region<'_>, columns: &Columns) -> Option<Doub
     let stated = bare * (other.si(1.0) / one.si(1.0)).sqrt();
     (USUAL.contains(&bare) && !USUAL.contains(&stated))
         .then(|| Doubt::Units { drop: shown(&of_drop.heading.text), rebound: shown(&of_rebound.heading.text) })
+}
+
+/// The doubt about speeds beside the angles of their paths.
+pub(super) fn oblique(columns: &Columns) -> Option<Doubt> {
+    let fast = columns.values().any(|(_, _, v)| v.what == What::Speed);
+    let angle = |c: &&Column| split(&c.heading.text).iter().any(|word| Phrase::Angle.is(&folded(&word.text)));
+    let column = columns.columns.iter().find(angle).filter(|_| fast)?;
+    Some(Doubt::Oblique { column: shown(&column.heading.text) })
 }
 
 /// The doubt whether releases and rebounds are read at the same end of the ball, where one names

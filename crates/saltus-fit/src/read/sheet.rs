@@ -51,4 +51,10 @@ impl Rows {
         self.at = (row, column);
         Ok(())
     }
+
+    /// Puts a remark on a cell below all cells, as a comment.
+    pub(super) fn remark(&mut self, text: &str) -> Result<(), String> {
+        let below = (self.at.0.saturating_add(u32::from(!self.text.is_empty())), 0);
+        self.put(below, &format!("# {text}"))
+    }
 }

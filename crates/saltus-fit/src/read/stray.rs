@@ -20,6 +20,11 @@ const UNLIKE: f64 = 30.0;
 const ALIKE: f64 = 3.0;
 /// and no height is greater than the one before by more than this.
 const RISE: f64 = 1.1;
+/// Falls of so many trials of a setting show how far they scatter,
+const SCATTERED: usize = 4;
+/// and one that is off by more than half a decade beside that is nearer to a slipped point than to
+/// the others.
+const HALF_DECADE: f64 = std::f64::consts::LN_10 / 2.0;
 /// Lower heights are mostly reading error, whose falls mean nothing, m.
 const LOW: f64 = 0.01;
 
@@ -82,19 +87,32 @@ fn strays(trials: &[Trial]) -> Vec<Stray> {
     let mut falling: Vec<f64> = heights.iter().flat_map(|own| falls(own)).filter(|fall| *fall < RISE.ln()).collect();
     let others = heights.len() > 1 && falling.len() > 1;
     let of_all = median(&mut falling);
-    let usual: HashMap<&str, (usize, Option<f64>, f64)> = alike
+    let usual: HashMap<&str, (usize, Option<f64>, f64, f64)> = alike
         .into_iter()
         .map(|(setting, (mut all, mut sizes))| {
-            (setting, (all.len(), median(&mut all), median(&mut sizes).unwrap_or(0.0)))
+            let fall = median(&mut all);
+            (setting, (all.len(), fall, scatter(&all), median(&mut sizes).unwrap_or(0.0)))
         })
         .collect();
     let one = |(trial, own): (usize, &Vec<(usize, usize, f64)>)| {
-        let (count, fall, size) = *usual.get(trials[trial].setting.as_str())?;
+        let (count, fall, scatter, size) = *usual.get(trials[trial].setting.as_str())?;
         let rises = falls(own).any(|fall| fall > RISE.ln());
-        let fall = fall.filter(|_| count > own.len() && !rises).or(of_all.filter(|_| rises && others));
-        in_trial(own, fall, size).map(|(reading, factor)| Stray { trial, reading, factor })
+        let fall = fall.filter(|_| count > own.len() && !rises);
+        let (unlike, alike) = match fall {
+            Some(_) if scatter + HALF_DECADE < UNLIKE.ln() => (scatter + HALF_DECADE, scatter + RISE.ln()),
+            _ => (UNLIKE.ln(), ALIKE.ln()),
+        };
+        let fall = fall.or(of_all.filter(|_| rises && others));
+        in_trial(own, (fall, size), (unlike, alike)).map(|(reading, factor)| Stray { trial, reading, factor })
     };
     heights.iter().enumerate().filter_map(one).collect()
+}
+
+/// How far falls, from the least to the greatest, scatter as logarithms: twice their middle half, in
+/// which no single one counts; no end where they are few.
+fn scatter(falls: &[f64]) -> f64 {
+    let n = falls.len();
+    if n < SCATTERED { f64::INFINITY } else { 2.0 * (falls[3 * n / 4] - falls[n / 4]) }
 }
 
 /// The heights of a trial that have a logarithm: the place of the reading, the number of the
@@ -118,10 +136,15 @@ fn range(heights: &[(usize, usize, f64)], usual: Option<f64>) -> (f64, f64) {
 }
 
 /// The reading of a trial that is in another unit, as its place, and the factor that is missing; of
-/// two the one that comes to the usual size.
-fn in_trial(heights: &[(usize, usize, f64)], usual: Option<f64>, size: f64) -> Option<(usize, f64)> {
+/// two the one that comes to the usual size. Falls that differ by `unlike` ask for a reason, which a
+/// factor is if with it they differ by less than `alike`.
+fn in_trial(
+    heights: &[(usize, usize, f64)],
+    (usual, size): (Option<f64>, f64),
+    (unlike, alike): (f64, f64),
+) -> Option<(usize, f64)> {
     let (least, most) = range(heights, usual);
-    if most - least < UNLIKE.ln() && (most < RISE.ln() || usual.is_none()) {
+    if most - least < unlike && (most < RISE.ln() || usual.is_none()) {
         return None;
     }
     // It stands at one of the falls that are unlike the others.
@@ -136,7 +159,7 @@ fn in_trial(heights: &[(usize, usize, f64)], usual: Option<f64>, size: f64) -> O
             // Differences that are rounding alone must not decide.
             let how = (((most - least) * 1e6).round(), (changed[place].2 - size).abs());
             let read = changed.iter().all(|h| h.2 >= LOW.ln());
-            if read && most - least < ALIKE.ln() && most < RISE.ln() && best.is_none_or(|b| how < b.0) {
+            if read && most - least < alike && most < RISE.ln() && best.is_none_or(|b| how < b.0) {
                 best = Some((how, heights[place].0, factor));
             }
         }

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::cell::{self, Cell};
 use super::encoding::decoded;
-use super::forms;
+use super::forms::{self, named_list};
 use super::heading::{Heading, Meaning};
 use super::limits::MANY;
 use super::units::Unit;
@@ -84,7 +84,7 @@ fn numeros(text: &str) -> Vec<usize> {
 }
 
 /// Where the `#` stands of a comment that names the columns of the numbers below it, `# t (s)  y
-/// (m)`: as many names as they have, and understood.
+/// (m)`: as many names as they have, and understood; or what a list of them is of.
 fn names_in_comment(text: &str) -> Option<usize> {
     let (mut at, mut comment) = (0, None);
     let first = text.split_inclusive('\n').find(|line| {
@@ -107,6 +107,9 @@ fn names_in_comment(text: &str) -> Option<usize> {
         };
         Some(found.len()).filter(|count| *count > 1 && found.iter().all(number))
     };
+    if matches!(cell::read(first.trim(), false), Cell::Number(m) if m.unit.is_none()) {
+        return named_list(comment.trim()).map(|_| at);
+    }
     let (mark, count) = [",", ";", "\t", "  ", " "].iter().find_map(|mark| Some((*mark, numbers(mark)?)))?;
     let names = |mark: &str| {
         let names = cells(comment, mark);

@@ -19,6 +19,9 @@ use crate::finding::{Doubt, Note};
 /// Heights of release are read within this part of the one that is stated: a centimetre or two.
 const NOMINAL: f64 = 0.03;
 
+/// A title has no more words than this; more, of which not all are understood, are a sentence.
+const TITLE: usize = 4;
+
 /// What a table's title states, and where.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Stated {
@@ -254,13 +257,18 @@ pub(super) fn doubted(region: &Region<'_>, table: &mut Table) {
     let felt = table.notes.iter().any(|note| matches!(note.kind, Note::Felt { .. }));
     // What was aimed at, and stands behind its name itself, is none of the readings.
     let aimed = |text: &str| {
-        text.split_once(':').is_some_and(|(name, aim)| {
+        text.split_once(':').or_else(|| text.split_once(" - ")).is_some_and(|(name, aim)| {
             let by = Heading::parse(name).turned_by();
             let stated = aim.contains(|c: char| c.is_ascii_digit()) || !Heading::parse(aim).names_anything();
-            by == [Atom::Goal] && stated
+            by == [Atom::Goal] && (stated || split(aim).len() > TITLE)
         })
     };
-    let tells = |text: &str| turned(text) && (!felt || wanted(text)) && !aimed(text);
+    // In a sentence a word turns nothing by itself: `corrected for parallax`.
+    let sentence = |text: &str| {
+        let words = split(text);
+        words.len() > TITLE && words.iter().any(|word| matches!(word.kind, Kind::Unknown))
+    };
+    let tells = |text: &str| turned(text) && (!felt || wanted(text)) && !aimed(text) && !sentence(text);
     let titles = |aside: &&LeftAside| match row(aside) {
         Some([name, value]) => tells(&name) || turned(&value) && wanted(&value),
         None => tells(&aside.name),

@@ -6,6 +6,9 @@ use std::sync::OnceLock;
 /// A word a line, a tab, its meanings.
 const WORDS: &str = include_str!("words.tsv");
 
+/// Given names of people, one a line, in the order of their bytes.
+const NAMES: &str = include_str!("names.txt");
+
 /// A meaning of a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Atom {
@@ -82,6 +85,8 @@ pub(super) enum Atom {
     Filler,
     /// A filler that readings are taken with, or by.
     Tool,
+    /// The given name of a person: who dropped the ball, or read.
+    Person,
     /// The word puts what follows in this place of an order.
     Ordinal(usize),
     /// The word is this unit.
@@ -92,7 +97,9 @@ impl Atom {
     /// Whether it has to do with what is measured: a quantity, an event, a statistic, what turns
     /// the meaning.
     pub(super) fn measures(self) -> bool {
-        use Atom::{Error, Filler, Footnote, Group, Label, Measure, Motion, Note, Number, Ordinal, Other, Unit, Void};
+        use Atom::{
+            Error, Filler, Footnote, Group, Label, Measure, Motion, Note, Number, Ordinal, Other, Person, Unit, Void,
+        };
         !matches!(
             self,
             Filler
@@ -107,6 +114,7 @@ impl Atom {
                 | Unit(_)
                 | Error
                 | Measure
+                | Person
                 | Void
         )
     }
@@ -218,11 +226,18 @@ fn beginning(word: &str) -> impl Iterator<Item = (&'static str, &'static [Atom])
     word.chars().next().and_then(|letter| all.get(&letter)).into_iter().flatten().copied()
 }
 
+/// Whether a word is the given name of a person.
+fn is_given(word: &str) -> bool {
+    static ALL: OnceLock<Vec<&'static str>> = OnceLock::new();
+    ALL.get_or_init(|| NAMES.lines().collect()).binary_search(&word).is_ok()
+}
+
 /// The meanings of a word, or of two parted by a blank, in lower case without accents; `None` if it
 /// is not known.
 pub(super) fn meanings(word: &str) -> Option<&'static [Atom]> {
     static ALL: OnceLock<HashMap<&'static str, &'static [Atom]>> = OnceLock::new();
-    ALL.get_or_init(|| words().collect()).get(word).copied()
+    let known = ALL.get_or_init(|| words().collect()).get(word).copied();
+    known.or_else(|| is_given(word).then_some(&[Atom::Person]))
 }
 
 /// The signs of notes below a table.

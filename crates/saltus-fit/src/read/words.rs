@@ -350,7 +350,7 @@ pub(super) fn pieces(text: &str) -> Vec<String> {
     let known = |word: Option<&str>| {
         let word = folded(word.unwrap_or_default());
         let sign = word.starts_with(char::is_alphabetic) && word.contains(|c: char| c.is_ascii_digit());
-        word.chars().count() < 3 || sign || meanings(&word).is_some()
+        word.chars().count() < 3 || sign || meanings(&word).is_some_and(|atoms| *atoms != [Atom::Person])
     };
     let end = |c: char| !c.is_alphanumeric();
     // Nor is who is short for a name: `Léa M. / Tom K.`.

@@ -14,7 +14,7 @@ use zip::ZipArchive;
 use super::aside::Why;
 use super::limits::{self, MANY};
 use super::sheet::{Content, Part, Rows};
-use super::{old_workbook, open_workbook};
+use super::{old_workbook, open_workbook, remarks};
 use crate::error::TableError;
 
 /// How much of another reader's message is shown, in characters.
@@ -49,7 +49,8 @@ fn archive(name: &str, bytes: &[u8]) -> Result<Vec<Part>, TableError> {
     let has = |entry: &str| names.iter().any(|n| n == entry);
     if has("xl/workbook.xml") {
         measure(&mut zip).map_err(|problem| broken(name, "workbook", &problem))?;
-        return caught(|| xlsx(bytes)).map_err(|problem| broken(name, "workbook", &problem));
+        let remarks = remarks::of_sheets(&names, |entry| unpacked(&mut zip, entry).ok());
+        return caught(|| xlsx(bytes, &remarks)).map_err(|problem| broken(name, "workbook", &problem));
     }
     if has("content.xml") {
         let sheets = unpacked(&mut zip, "content.xml").and_then(|content| open_workbook::sheets(&content));
@@ -114,11 +115,12 @@ fn measure(zip: &mut ZipArchive<Cursor<&[u8]>>) -> Result<(), String> {
     Ok(())
 }
 
-fn xlsx(bytes: &[u8]) -> Result<Vec<Part>, String> {
+/// The sheets, each with the remarks on its cells, by the number of the sheet.
+fn xlsx(bytes: &[u8], remarks: &[(usize, String)]) -> Result<Vec<Part>, String> {
     let mut workbook = Xlsx::new(Cursor::new(bytes)).map_err(|e| e.to_string())?;
     let mut parts = Vec::new();
     let mut left = limits::bytes();
-    for (name, hidden) in shown_or_not(workbook.sheets_metadata()) {
+    for (number, (name, hidden)) in (1..).zip(shown_or_not(workbook.sheets_metadata())) {
         let mut cells = match workbook.worksheet_cells_reader(&name) {
             Ok(cells) => cells,
             // A sheet that is a chart has no cells.
@@ -133,6 +135,7 @@ fn xlsx(bytes: &[u8]) -> Result<Vec<Part>, String> {
                 value => rows.put(cell.get_position(), &shown(&Data::from(value.clone())))?,
             }
         }
+        remarks.iter().filter(|(sheet, _)| *sheet == number).try_for_each(|(_, text)| rows.remark(text))?;
         left = rows.left;
         parts.push(Part { name, aside: hidden.then_some(Why::Hidden), content: Content::Cells(rows.text) });
     }

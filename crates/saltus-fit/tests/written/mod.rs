@@ -39,10 +39,26 @@ fn data(rows: &[Vec<String>]) -> String {
 
 /// A workbook of sheets whose rows are given as XML.
 pub(crate) fn workbook(sheets: &[(&str, String)]) -> Vec<u8> {
+    workbook_with(sheets, Vec::new())
+}
+
+/// The same of one sheet, with remarks on its cells.
+#[allow(dead_code)] // not every test has remarks
+pub(crate) fn remarked(rows: &[Vec<String>], remarks: &[&str]) -> Vec<u8> {
+    let texts = remarks
+        .iter()
+        .map(|text| format!("<comment ref=\"B1\"><text><r><t>Anna:</t></r><r><t> {text}</t></r></text></comment>"));
+    let comments = format!("<comments><commentList>{}</commentList></comments>", texts.collect::<String>());
+    let link = "<Relationships><Relationship Id=\"c\" Target=\"../comments/comment1.xml\"/></Relationships>";
+    let files = [("xl/comments/comment1.xml", comments), ("xl/worksheets/_rels/sheet1.xml.rels", link.to_owned())];
+    workbook_with(&[("Data", data(rows))], files.map(|(name, text)| (name.to_owned(), text)).to_vec())
+}
+
+fn workbook_with(sheets: &[(&str, String)], more: Vec<(String, String)>) -> Vec<u8> {
     const MAIN: &str = "http://schemas.openxmlformats.org/spreadsheetml/2006/main";
     const LINKS: &str = "http://schemas.openxmlformats.org/officeDocument/2006/relationships";
     const PACKAGE: &str = "http://schemas.openxmlformats.org/package/2006/relationships";
-    let (mut names, mut links, mut files) = (String::new(), String::new(), Vec::new());
+    let (mut names, mut links, mut files) = (String::new(), String::new(), more);
     for (n, (name, cells)) in sheets.iter().enumerate() {
         let n = n + 1;
         names += &format!("<sheet name=\"{name}\" sheetId=\"{n}\" r:id=\"rId{n}\"/>");

@@ -133,7 +133,7 @@ pub(super) fn listed_numbers(line: &str) -> Option<Vec<&str>> {
 
 /// The only part of a line, between commas, that names a quantity and its unit, or frames of
 /// contacts: `Heights (m), first the drop`.
-pub(super) fn named_list(line: &str) -> Option<&str> {
+pub(in crate::read) fn named_list(line: &str) -> Option<&str> {
     let names = |part: &&str| {
         let heading = Heading::parse(part);
         let frames = heading.meaning == Meaning::Frame && heading.has(Atom::Impact);

@@ -49,8 +49,10 @@ impl Heading {
         if state {
             return Meaning::Setting;
         }
+        let placed = has(Atom::Release) && placed(words);
         let setting = has(Group)
             && !named
+            && !placed
             && !has(Atom::Error)
             && !has(Height)
             && !has(Position)
@@ -65,7 +67,7 @@ impl Heading {
         }
         // A time that names a bounce and the one after it lies between them, whatever stands there.
         let next = matches!(numbers.bounce.as_slice(), [one, other] if *one > 0 && *other == one + 1);
-        let what = match self.what() {
+        let what = match self.what(placed) {
             What::Time if next => What::Interval,
             _ if intervals => What::Interval,
             what => what,
@@ -88,8 +90,8 @@ impl Heading {
         self.reading(what, numbers, run)
     }
 
-    /// The quantity that words and unit name.
-    fn what(&self) -> What {
+    /// The quantity that words and unit name; `placed` if they say where a release is.
+    fn what(&self, placed: bool) -> What {
         use Atom::{
             Air, Between, Distance, Height, Impact, Interval, Number, Percent, Position, Rebound, Release, Rest, Speed,
             Time, Total,
@@ -114,7 +116,7 @@ impl Heading {
             || of(Dimension::Length)
             || has(Percent)
             || has(Rebound) && !has(Impact) && !(has(Number) && self.unit.is_none())
-            || has(Release) && !has(Atom::Trial)
+            || has(Release) && (placed || !has(Atom::Trial))
         {
             What::Height
         } else {
@@ -289,6 +291,19 @@ impl Heading {
             words.clear();
         }
     }
+}
+
+/// Whether words say where a height is measured: at an end of the ball, or above what floor.
+fn placed(words: &[Word]) -> bool {
+    let spoken = || words.iter().filter(|w| !w.is(Atom::Filler) || leads(w));
+    let leads_to = |(lead, floor): (&Word, &Word)| leads(lead) && floor.is(Atom::Floor);
+    words.iter().any(|w| w.is(Atom::Bottom)) || spoken().zip(spoken().skip(1)).any(leads_to)
+}
+
+/// Whether a word leads to what something is above: `from`, `over`.
+fn leads(word: &Word) -> bool {
+    let word = folded(&word.text);
+    Phrase::From.is(&word) || Phrase::Above.is(&word)
 }
 
 /// Whether what words speak of was ahead of a rebound: `before the rebound`.

@@ -5,7 +5,8 @@ use super::super::cell::{self, Cell};
 use super::super::heading::{At, Heading, Meaning, What};
 use super::super::phrases::Phrase;
 use super::super::units::{Dimension, Unit, names_unit};
-use super::super::vocabulary::folded;
+use super::super::vocabulary::{Atom, folded};
+use super::super::words::{Word, split};
 use super::Node;
 
 /// A unit that a record states, as it is written, and the name it is stated by: `height_unit`.
@@ -131,7 +132,9 @@ fn of<'a>(name: &str, known: &'a [Stated]) -> Option<&'a str> {
     // A quantity by itself is that of all readings: `height`, but not `drop`.
     let whole = |stated: &&Stated| {
         let of = Heading::parse(&stated.of);
-        stated.of.is_empty() || of.unknown.is_empty() && of.value().is_some_and(|value| value.at == At::Row)
+        let of_all = |word: &Word| word.is(Atom::Filler) || Phrase::Lengths.is(&folded(&word.text));
+        let lengths = stated.dimension == Dimension::Length && split(&stated.of).iter().all(of_all);
+        lengths || stated.of.is_empty() || of.unknown.is_empty() && of.value().is_some_and(|value| value.at == At::Row)
     };
     let mut fitting = known.iter().filter(fits);
     let called = fitting.clone().find(called);

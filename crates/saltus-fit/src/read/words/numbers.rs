@@ -47,6 +47,8 @@ pub(in crate::read) fn numbers(words: &[Word]) -> Numbers {
                     found.bounce.push(count);
                 }
             }
+            // What bears the name of a person is what that person dropped, or read.
+            _ if word.is(Atom::Person) && found.trial.is_empty() => word.text.clone_into(&mut found.trial),
             _ if of_group(word) => {
                 labelled |= word.is(Atom::Label);
                 group.push(&word.text);

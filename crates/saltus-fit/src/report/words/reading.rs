@@ -1,6 +1,6 @@
 //! What speaks against trusting the readings of a table.
 
-use crate::finding::Doubt;
+use crate::finding::{Change, Doubt};
 
 pub(super) fn words(doubt: &Doubt) -> String {
     match doubt {
@@ -49,8 +49,38 @@ pub(super) fn words(doubt: &Doubt) -> String {
         Doubt::Chance { contacts, once_in } => format!(
             "{contacts} sounds come ever sooner, as the contacts of a ball do; in one of {once_in} recordings like this other sounds do so by chance"
         ),
+        Doubt::Remark { text, line, change } => {
+            let place = line.map_or_else(String::new, |line| format!("line {line}: "));
+            format!("{place}'{text}': {}", remark(*change))
+        }
+        Doubt::Oblique { column } => format!(
+            "beside the speeds stand angles, '{column}': give the components across the floor, a speed times the sine of its angle from it"
+        ),
         Doubt::UntilRest => "the COR follows from the time until the ball rests, as if it bounced ever smaller; its last contacts are no \
                              bounces, and rolling or ringing lengthens the time"
             .to_owned(),
+    }
+}
+
+/// What to do about a remark that changes the readings.
+const fn remark(change: Change) -> &'static str {
+    match change {
+        Change::Thrown => {
+            "a ball that is not simply let go has a speed of its own: is the height of release that of a drop?"
+        }
+        Change::Medium => "a COR is of a ball in air and of a level floor at rest: do the readings show one?",
+        Change::Counted => "are all bounces there? Number those that are, and leave out no row",
+        Change::Shifted => {
+            "are the readings right as they stand? If they are, take the remark out; a zero can be stated (--zero)"
+        }
+        Change::Void => "are the readings to be used? Take those out that are not",
+        Change::Unread => "were the readings measured?",
+        Change::Clock => "do the times run as the clock does? If they do, take the remark out",
+        Change::Order => "are the rows bounces one after the other? Say in a column what tells them apart",
+        Change::Unclear => {
+            "most of this is not understood, and it may change what the numbers mean; if it does not, take it out"
+        }
+        Change::Unsure => "are the readings sure? If they are, take the remark out",
+        Change::Changed => "is it one ball on one floor? Name each in a column",
     }
 }

@@ -1,0 +1,190 @@
+//! Remarks that change what the readings beside them mean: the ball was thrown, the rule slipped,
+//! every other bounce is missing. `alarms.tsv` lists how people say so.
+
+use std::collections::{HashMap, HashSet};
+use std::sync::OnceLock;
+
+use super::aside::{Part, Why};
+use super::clause::frame_rate;
+use super::grid::shown;
+use super::heading::Heading;
+use super::phrases::{DENIED, denies};
+use super::region::Region;
+use super::said::stem;
+use super::vocabulary::{Atom, ROWS, folded};
+use super::words::{Kind, Word, split, unaddressed};
+use super::{Event, LeftAside, Table, Trial};
+use crate::finding::{Change, Doubt};
+
+/// A change, a tab, a phrase in lower case without accents, whose last word may go on where it ends
+/// in `*`.
+const ALARMS: &str = include_str!("alarms.tsv");
+
+/// A remark of which so many words are not understood tells more than who measured, where and with
+/// what: one in a hundred of those that change nothing has as many.
+const STORY: usize = 5;
+
+/// A name of so many words is a sentence.
+const SENTENCE: usize = 4;
+
+/// A phrase behind its first word.
+struct Rest {
+    change: Change,
+    words: Vec<&'static str>,
+    /// The last word of the phrase may go on.
+    open: bool,
+}
+
+impl Rest {
+    /// Whether the phrase stands at the beginning of `words`, whose first begins as its own does;
+    /// `whole` if it is its own.
+    fn stands(&self, whole: bool, words: &[&str]) -> bool {
+        let last = self.words.len();
+        let is = |(n, word): (usize, &&str)| {
+            words.get(n + 1).is_some_and(|w| w == word || self.open && n + 1 == last && w.starts_with(word))
+        };
+        (whole || self.open && last == 0) && self.words.iter().enumerate().all(is)
+    }
+}
+
+/// The phrases by their first words.
+fn phrases() -> &'static HashMap<&'static str, Vec<Rest>> {
+    static ALL: OnceLock<HashMap<&'static str, Vec<Rest>>> = OnceLock::new();
+    ALL.get_or_init(|| {
+        let changes = [
+            Change::Thrown,
+            Change::Medium,
+            Change::Counted,
+            Change::Shifted,
+            Change::Void,
+            Change::Unread,
+            Change::Clock,
+            Change::Order,
+            Change::Changed,
+            Change::Unsure,
+        ];
+        let mut all: HashMap<&str, Vec<Rest>> = HashMap::new();
+        for (kind, phrase) in ALARMS.lines().filter_map(|line| line.split_once('\t')) {
+            let Some(&change) = changes.iter().find(|change| **change == *kind) else { continue };
+            let mut words = phrase.trim_end_matches('*').split(' ');
+            let first = words.next().unwrap_or_default();
+            all.entry(first).or_default().push(Rest { change, words: words.collect(), open: phrase.ends_with('*') });
+        }
+        all
+    })
+}
+
+/// What a text says that changes readings, but what it denies: `not thrown`.
+fn changes(text: &str) -> Vec<Change> {
+    let text = folded(&unaddressed(text));
+    let mut found = Vec::new();
+    for clause in text.split([',', ';', ':', '.', '(', ')', '!', '?']) {
+        let words: Vec<&str> = clause.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).collect();
+        let denies = |word: &&str| denies(word);
+        for (at, word) in words.iter().enumerate() {
+            let denied = |rest: &Rest| {
+                let after = words.get(at + 1 + rest.words.len());
+                after.is_some_and(denies) || words[at.saturating_sub(DENIED)..at].iter().any(denies)
+            };
+            for end in word.char_indices().map(|(end, c)| end + c.len_utf8()) {
+                let rests = phrases().get(&word[..end]).into_iter().flatten();
+                let stands = rests.filter(|rest| rest.stands(end == word.len(), &words[at..]) && !denied(rest));
+                found.extend(stands.map(|rest| rest.change));
+            }
+        }
+    }
+    found
+}
+
+/// Whether a text tells so much that is not understood that it may change anything. A word in a
+/// sentence that begins with a capital is a name.
+fn tells(text: &str) -> bool {
+    let named = |(n, word): &(usize, Word)| *n > 0 && word.text.starts_with(char::is_uppercase);
+    let words = split(&unaddressed(text)).into_iter().enumerate().filter(|word| !named(word));
+    words.filter(|(_, word)| matches!(word.kind, Kind::Unknown)).count() >= STORY
+}
+
+fn words(text: &str) -> usize {
+    text.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).count()
+}
+
+/// Why what bears a name is no reading: `Simulation`, `dynamic model A`, `wrong ball, do not use`.
+pub(super) fn named(name: &str) -> Option<Why> {
+    let predicted = Heading::parse(name).turned_by().contains(&Atom::Predicted);
+    let said = changes(name).into_iter().find_map(|change| match change {
+        Change::Unread => Some(Why::Predicted),
+        Change::Void if words(name) > 1 => Some(Why::Void),
+        _ => None,
+    });
+    said.or(predicted.then_some(Why::Predicted))
+}
+
+/// The remarks in and around a table, with their lines: what is above other tables is theirs, and
+/// what is in a row that does not count is about it.
+fn remarks<'a>(region: &'a Region<'_>, table: &Table, others: &[&Region<'_>]) -> Vec<(&'a str, Option<u64>)> {
+    let grid = region.view.grid;
+    let void =
+        |line: u64| table.left_aside.iter().any(|a| a.what == Part::Row && a.why == Why::Void && a.line == Some(line));
+    let theirs = |line: u64| others.iter().any(|other| other.aside.iter().any(|aside| aside.line == Some(line)));
+    let header = |row: usize| row == region.header_row || others.iter().any(|other| row == other.header_row);
+    let rows =
+        (0..grid.rows().min(ROWS)).filter(|&row| !header(row) && !void(grid.line(row)) && !theirs(grid.line(row)));
+    let cells = rows.flat_map(|row| (0..grid.width(row)).map(move |n| (grid.cell(row, n), Some(grid.line(row)))));
+    // A word by itself names something: a ball, an event.
+    let cells = cells.filter(|(cell, _)| cell.trim().contains(char::is_whitespace));
+    cells.chain(grid.comments().take(ROWS).map(|(line, text)| (text, Some(line)))).collect()
+}
+
+/// The doubt about a remark, or a name of the table, that changes what its readings mean.
+pub(super) fn doubt(region: &Region<'_>, table: &Table, others: &[&Region<'_>]) -> Option<Doubt> {
+    let readings = || table.trials.iter().flat_map(|trial| &trial.readings).filter(|r| r.event != Event::Sample);
+    // A clock matters where flights are compared with heights; a film shows how it runs.
+    let both = readings().any(|r| r.time.is_some()) && readings().any(|r| r.height.is_some());
+    let timed = both || table.trials.iter().any(|trial| trial.timed.is_some());
+    let remarks = remarks(region, table, others);
+    // One rate is that of a slow camera; a second one that at which it was played.
+    let mut rates = remarks.iter().flat_map(|(text, _)| text.split([',', ';'])).filter_map(frame_rate);
+    let played = rates.next().is_some_and(|first| rates.any(|rate| rate != first));
+    let heeded = |text: &str, change: &Change| match change {
+        Change::Clock => timed && (played || frame_rate(text).is_none()),
+        Change::Shifted => region.zero.is_none(),
+        _ => true,
+    };
+    let remark = |(text, line): (&str, Option<u64>)| {
+        let change = changes(text).into_iter().find(|change| heeded(text, change));
+        let change = change.or_else(|| tells(text).then_some(Change::Unclear))?;
+        Some(Doubt::Remark { text: shown(text.trim()), line, change })
+    };
+    let grid = region.view.grid;
+    let names = grid.tab.into_iter().chain([region.label.as_str(), stem(grid.name)]);
+    let name = |text: &str| {
+        if words(text) >= SENTENCE {
+            return remark((text, None));
+        }
+        let of_all = |change: &Change| match change {
+            Change::Thrown | Change::Medium | Change::Unread => true,
+            Change::Void => words(text) > 1,
+            _ => false,
+        };
+        let change = changes(text).into_iter().find(of_all)?;
+        Some(Doubt::Remark { text: shown(text), line: None, change })
+    };
+    remarks.iter().copied().find_map(remark).or_else(|| names.into_iter().find_map(name))
+}
+
+/// Leaves groups and settings aside whose names say that they are no readings, where others remain.
+pub(super) fn leave(table: &mut Table) {
+    let names = table.trials.iter().flat_map(|trial| [&trial.group, &trial.setting]);
+    let apart: HashSet<String> = names.cloned().collect();
+    let bad: HashMap<String, Why> = apart.into_iter().filter_map(|name| named(&name).map(|why| (name, why))).collect();
+    let name = |trial: &Trial| [&trial.group, &trial.setting].into_iter().find(|name| bad.contains_key(*name)).cloned();
+    if bad.is_empty() || table.trials.iter().all(|trial| name(trial).is_some()) {
+        return;
+    }
+    table.trials.retain(|trial| name(trial).is_none());
+    // What is said of them is said of nothing else.
+    let theirs = |text: &str| bad.keys().any(|name| name.contains(text.trim_end_matches('…')));
+    table.doubts.retain(|doubt| !matches!(doubt, Doubt::Remark { text, .. } if theirs(text)));
+    let aside = bad.into_iter().map(|(name, why)| LeftAside::new(Part::Text, name, why));
+    table.left_aside.extend(aside);
+}
