@@ -5,6 +5,7 @@
 
 use proptest::prelude::*;
 use saltus_bounce::flight::{LinearDragFlight, VerticalFlight};
+use saltus_cases::cases;
 use saltus_scene::Scene;
 use saltus_scene::accuracy::{Accuracy, Outcome, Target, Way};
 
@@ -58,7 +59,7 @@ impl Throw {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(100))]
+    #![proptest_config(ProptestConfig::with_cases(cases(100)))]
 
     #[test]
     fn the_advice_keeps_its_promise(

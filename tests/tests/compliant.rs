@@ -8,6 +8,7 @@ use saltus::{Auto, Dop853, Rodas5P, Run, RunOf, Simulation, Stop, Tsit5};
 use saltus_bounce::compliant::{Moment, Stage};
 use saltus_bounce::contact::{ContactLaw, Hertz, HuntCrossley, KelvinVoigt};
 use saltus_bounce::{Compliant, Cor, Drop};
+use saltus_cases::cases;
 
 /// A run by steps that are as exact as they get.
 fn tight<L: ContactLaw>(ball: &Compliant<L>, stage: Stage, start: Vector2<f64>, end: f64) -> RunOf<Compliant<L>> {
@@ -86,7 +87,7 @@ fn rigid_impacts_are_the_limit() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 100, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(100), failure_persistence: None, ..ProptestConfig::default() })]
 
     /// The area of the loop is the energy lost, under gravity too; no contact gains energy.
     #[test]

@@ -7,6 +7,7 @@ use proptest::prelude::*;
 use saltus::nalgebra::{Vector2, vector};
 use saltus::{RunOf, Simulation};
 use saltus_bounce::{Ball, Cor, Mode};
+use saltus_cases::cases;
 
 fn run(g: f64, e: f64, start: Vector2<f64>, span: std::ops::Range<f64>) -> RunOf<Ball> {
     let ball = Ball::new(g, Cor::new(e).unwrap()).unwrap();
@@ -18,7 +19,7 @@ fn energy(g: f64, x: &Vector2<f64>) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(400), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn the_floor_holds_and_energy_is_not_made(

@@ -6,6 +6,7 @@ use proptest::prelude::*;
 use saltus::{RunOf, Simulation, Stop};
 use saltus_bounce::line::{Contact, Lying, Row};
 use saltus_bounce::{Cor, Drop, Line};
+use saltus_cases::cases;
 
 fn cor(e: f64) -> Cor {
     Cor::new(e).unwrap()
@@ -54,7 +55,7 @@ fn a_stack_is_hit() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(64), failure_persistence: None, ..ProptestConfig::default() })]
 
     /// Without a floor momentum is kept, and energy never rises, whatever the masses.
     #[test]

@@ -6,6 +6,7 @@ use std::fs;
 use std::path::Path;
 
 use proptest::prelude::*;
+use saltus_cases::cases;
 use saltus_scene::Scene;
 use saltus_scene::plan::{Advance, Effect, End, Model, Record};
 
@@ -77,7 +78,7 @@ fn each_scene_has_its_model() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, cases: 200, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, cases: cases(200), ..ProptestConfig::default() })]
 
     /// Random scenes are planned and run within a budget, or refused with a sentence.
     #[test]

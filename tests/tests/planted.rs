@@ -89,7 +89,7 @@ fn expected(roots: &[(i64, u32)], up: bool) -> Vec<(f64, bool)> {
 
 fn cases(share: u64) -> u64 {
     let asked = std::env::var("PLANTED").ok().and_then(|text| text.parse().ok());
-    asked.unwrap_or(100_000) / share
+    asked.unwrap_or(u64::from(saltus_cases::cases(100_000))) / share
 }
 
 /// Falls found one after the other, each root spent before the next search.

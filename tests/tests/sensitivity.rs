@@ -13,6 +13,7 @@ use saltus::nalgebra::{Vector2, vector};
 use saltus::return_map::{ReturnMap, Selection};
 use saltus::step::{Dop853, Stepper};
 use saltus::{Coords, ErrorKind, Linearize, RunOf, Sensitive, Simulation, State, Stop, Tangent, Tsit5, Wrt, saltation};
+use saltus_cases::cases;
 
 use Wrt::{Initial, Parameter};
 
@@ -308,7 +309,7 @@ fn a_tangent_is_a_state() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(64), failure_persistence: None, ..ProptestConfig::default() })]
 
     /// A ball with quadratic drag on a table that moves: columns against differences of runs.
     #[test]

@@ -2,10 +2,11 @@
 //! exact rational arithmetic.
 
 use proptest::prelude::*;
+use saltus_cases::cases;
 use saltus_tests::sturm::found_and_counted;
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(400))]
+    #![proptest_config(ProptestConfig::with_cases(cases(400)))]
 
     #[test]
     fn as_many_crossings_as_sturm_counts(

@@ -7,6 +7,7 @@ use saltus::{EndingOf, Simulation, Stop};
 use saltus_bounce::cloud::{Swarm, Touch};
 use saltus_bounce::line::{Lying, Row};
 use saltus_bounce::{Cloud, Cor, Line};
+use saltus_cases::cases;
 
 fn cor(e: f64) -> Cor {
     Cor::new(e).unwrap()
@@ -170,7 +171,7 @@ fn overlaps() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(64), failure_persistence: None, ..ProptestConfig::default() })]
 
     /// Without walls momentum is kept; energy never rises, whatever the masses.
     #[test]

@@ -9,6 +9,7 @@ use std::fs;
 use std::process::{Child, Command, Output, Stdio};
 
 use proptest::prelude::*;
+use saltus_cases::cases;
 use tool::place::{DROP, Place};
 
 const GRID: [&str; 4] = ["--vary", "restitution=0.5:0.9:12", "--vary", "ball.height=1m:9m:10"];
@@ -198,7 +199,7 @@ fn runs_that_come_to_nothing_are_rows_and_named() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 12, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(12), ..ProptestConfig::default() })]
     /// Parts that are missing, cut off or padded are made again; what was left over is gone.
     #[test]
     fn what_is_missing_or_torn_is_made_again(

@@ -7,6 +7,7 @@ mod typed;
 
 use encoding_rs::{BIG5, EUC_KR, Encoding, GB18030, SHIFT_JIS, WINDOWS_1250, WINDOWS_1251, WINDOWS_1253};
 use proptest::prelude::*;
+use saltus_cases::cases;
 use saltus_fit::{Fit, ReadOptions, Report, Table, Verdict};
 use typed::{fit, trusted};
 
@@ -40,7 +41,7 @@ fn drops(e: f64, mark: &str) -> String {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(24), failure_persistence: None, ..ProptestConfig::default() })]
 
     /// The encoding of a file is that in which its headings are understood.
     #[test]

@@ -6,6 +6,7 @@
 mod typed;
 
 use proptest::prelude::*;
+use saltus_cases::cases;
 use saltus_fit::{Fit, ReadOptions, Report, Table, Verdict};
 use typed::{fit, read, trusted};
 
@@ -33,7 +34,7 @@ fn near(found: f64, e: f64) -> bool {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(24), failure_persistence: None, ..ProptestConfig::default() })]
 
     /// A line says what all numbers below it are, and in which unit; each stands behind its name.
     #[test]

@@ -10,6 +10,7 @@ mod typed;
 use film::{Ball, Contact, csv, noisy, report};
 use noise::Noise;
 use proptest::prelude::*;
+use saltus_cases::cases;
 use saltus_fit::{FindingKind, Report, Verdict};
 use typed::{fit, read, trusted};
 
@@ -34,7 +35,7 @@ fn off(n: usize) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(24), failure_persistence: None, ..ProptestConfig::default() })]
 
     /// A number of degrees or of a pressure in a heading tells its column from others; beside them
     /// `Drop` counts, whatever rows below sum up or remark.

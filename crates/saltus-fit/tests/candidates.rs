@@ -4,6 +4,7 @@
 #![allow(clippy::panic, clippy::unwrap_used)] // a test that cannot go on has failed
 
 use proptest::prelude::*;
+use saltus_cases::cases;
 use saltus_fit::{Fit, ReadOptions, Report, Table, Verdict};
 
 /// What may be called a height and is none that the ball reached, or is that of another reading.
@@ -98,7 +99,7 @@ fn wrong(report: &Report, e: f64, near: f64) -> bool {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 1500, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(1500), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn of_two_heights_the_wrong_one_is_not_trusted(

@@ -7,6 +7,7 @@
 mod typed;
 
 use proptest::prelude::*;
+use saltus_cases::cases;
 use saltus_fit::{ReadOptions, Table, Verdict};
 use typed::{fit, trusted};
 
@@ -51,7 +52,7 @@ fn of_groups(report: &saltus_fit::Report) -> Vec<f64> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(24), failure_persistence: None, ..ProptestConfig::default() })]
 
     /// Conditions in numbers with several drops of each, in rows or side by side, below a line that
     /// tells the height of release: a COR for each.

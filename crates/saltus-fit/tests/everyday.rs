@@ -6,6 +6,7 @@
 mod typed;
 
 use proptest::prelude::*;
+use saltus_cases::cases;
 use saltus_fit::{FindingKind, Fit, Verdict};
 use typed::{fit, read, trusted};
 
@@ -34,7 +35,7 @@ fn height(e: f64, t: f64) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(24), failure_persistence: None, ..ProptestConfig::default() })]
 
     /// The sign of an error above a column, or behind a mean, is that of the readings before it.
     #[test]

@@ -8,6 +8,7 @@ mod noise;
 
 use film::{Ball, Contact, csv, noisy, report};
 use noise::Noise;
+use saltus_cases::cases;
 use saltus_fit::{FindingKind, Fit, ReadOptions, Report, Table, Verdict};
 
 const CORS: [fn(f64) -> f64; 4] = [|_| 0.52, |_| 0.62, |_| 0.72, |_| 0.82];
@@ -15,7 +16,7 @@ const SCATTER: [f64; 4] = [5e-4, 1e-3, 2e-3, 3e-3];
 
 /// So many films of each kind; the environment's FILMS asks for more.
 fn films() -> u32 {
-    std::env::var("FILMS").map_or(40, |n| n.parse().expect("FILMS is a number"))
+    std::env::var("FILMS").map_or(cases(40), |n| n.parse().expect("FILMS is a number"))
 }
 
 /// One film of many, drop height, rebounds, scatter and length chosen by its number; and the least

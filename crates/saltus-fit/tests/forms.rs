@@ -7,6 +7,7 @@
 mod typed;
 
 use proptest::prelude::*;
+use saltus_cases::cases;
 use saltus_fit::{Fit, Verdict};
 use typed::{fit, read, trusted};
 
@@ -27,7 +28,7 @@ fn joined(numbers: &[f64], mark: &str) -> String {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 48, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(48), failure_persistence: None, ..ProptestConfig::default() })]
 
     /// A cell that is no number, and whose parts are, alike in size, holds repeats: it says what a
     /// column for each of them says.

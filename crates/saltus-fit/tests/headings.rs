@@ -6,6 +6,7 @@
 mod typed;
 
 use proptest::prelude::*;
+use saltus_cases::cases;
 use saltus_fit::{Group, Report, Verdict};
 use typed::{fit, read, trusted};
 
@@ -36,7 +37,7 @@ fn drops(rebound: &str, e: f64) -> String {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 32, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(32), failure_persistence: None, ..ProptestConfig::default() })]
 
     /// However many readings a mean is of, it is that of the first rebound.
     #[test]

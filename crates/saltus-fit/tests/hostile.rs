@@ -12,6 +12,7 @@ use std::path::Path;
 
 use proptest::prelude::*;
 use random::Random;
+use saltus_cases::cases;
 use saltus_fit::{ReadOptions, Table};
 use written::{cells, workbook, xlsx, zip};
 
@@ -109,7 +110,7 @@ fn no_message_is_too_long() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(200), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn no_bytes_are_too_much(start in 0usize..6, bytes in proptest::collection::vec(any::<u8>(), 0..400)) {

@@ -9,6 +9,7 @@ mod typed;
 use film::{Ball, Contact, noisy};
 use noise::Noise;
 use proptest::prelude::*;
+use saltus_cases::cases;
 use saltus_fit::{Fit, Method, ReadOptions, Report, Source, Table, Verdict};
 use typed::{fit, read, trusted};
 
@@ -97,7 +98,7 @@ fn fine_samples_are_no_fine_readings() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 32, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(32), failure_persistence: None, ..ProptestConfig::default() })]
 
     /// How long each contact lasts stands beside when it was, in any unit and either order.
     #[test]
@@ -218,7 +219,7 @@ fn peaks_of_a_sound_are_contacts() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(24), failure_persistence: None, ..ProptestConfig::default() })]
 
     /// Flights named by the contacts that they lie between, in words or by a dash, are of the ball
     /// that the table names.

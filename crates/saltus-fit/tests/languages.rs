@@ -4,6 +4,7 @@
 #![allow(clippy::panic, clippy::unwrap_used)] // a test that cannot go on has failed
 
 use proptest::prelude::*;
+use saltus_cases::cases;
 use saltus_fit::{Fit, ReadOptions, Table, Why};
 
 /// How the heights of release and of the rebound are called.
@@ -116,7 +117,7 @@ fn cor(text: &str) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(200))]
+    #![proptest_config(ProptestConfig::with_cases(cases(200)))]
 
     #[test]
     fn drops_are_drops_in_every_language(

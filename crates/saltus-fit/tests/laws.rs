@@ -6,6 +6,7 @@ mod noise;
 
 use noise::Noise;
 use proptest::prelude::*;
+use saltus_cases::cases;
 use saltus_fit::{Fit, ReadOptions, Report, Table, Verdict};
 
 fn heights(e: f64, h0: f64, count: usize) -> Vec<f64> {
@@ -26,7 +27,7 @@ fn parse(text: &str) -> Table {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 200, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(200), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn exact_heights_give_their_cor_back(e in 0.05..0.999f64, h0 in 0.02..20.0f64, count in 2usize..9) {

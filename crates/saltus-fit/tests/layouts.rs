@@ -6,6 +6,7 @@
 mod written;
 
 use proptest::prelude::*;
+use saltus_cases::cases;
 use saltus_fit::{Event, ReadOptions, Table};
 use written::{xlsx, zip};
 
@@ -121,7 +122,7 @@ const TITLE: [&str; 16] = [
 ];
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(300), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn heights_of_trials(

@@ -7,6 +7,7 @@
 mod typed;
 
 use proptest::prelude::*;
+use saltus_cases::cases;
 use saltus_fit::{ReadOptions, Table, Verdict, Why};
 use typed::{fit, trusted};
 
@@ -20,7 +21,7 @@ fn near(found: f64, e: f64) -> bool {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 12, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(12), failure_persistence: None, ..ProptestConfig::default() })]
 
     /// Where names of balls stand above numbers by themselves, one that is not known is a name too.
     #[test]

@@ -7,6 +7,7 @@ mod typed;
 mod written;
 
 use proptest::prelude::*;
+use saltus_cases::cases;
 use saltus_fit::{Fit, ReadOptions, Report, Table, Verdict};
 use typed::{fit, read, trusted};
 use written::xlsx;
@@ -27,7 +28,7 @@ fn off(n: usize) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(24), failure_persistence: None, ..ProptestConfig::default() })]
 
     /// A time that names a bounce and the next one is that of the flight between them, whoever
     /// wrote the rows down.

@@ -5,12 +5,14 @@
 mod noise;
 
 use noise::Noise;
+use saltus_cases::cases;
 use saltus_fit::{Fit, ReadOptions, Report, Table, Verdict};
 
 /// The part of runs whose interval holds `truth`. A trusted COR must be near it, and nearly all
 /// must be.
 fn held(what: &str, runs: usize, truth: f64, mut run: impl FnMut(&mut Noise) -> Report) -> f64 {
     let mut noise = Noise(77);
+    let runs = cases(runs as u32) as usize;
     let (mut held, mut near) = (0, 0);
     for _ in 0..runs {
         let report = run(&mut noise);

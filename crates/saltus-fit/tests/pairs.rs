@@ -7,6 +7,7 @@
 mod typed;
 
 use proptest::prelude::*;
+use saltus_cases::cases;
 use saltus_fit::{Fit, Note, ReadOptions, Report, Table};
 use typed::{fit, read, trusted};
 
@@ -37,7 +38,7 @@ fn on_and_off(names: (&str, &str), contacts: &[(f64, f64)]) -> String {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 16, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(16), failure_persistence: None, ..ProptestConfig::default() })]
 
     /// A gate is blocked for the longer the slower the ball is: the COR is the ratio of the times
     /// turned over.

@@ -7,6 +7,7 @@
 mod typed;
 
 use proptest::prelude::*;
+use saltus_cases::cases;
 use saltus_fit::{Fit, ReadOptions, Report, Table, Verdict};
 use typed::{fit, read, trusted};
 
@@ -23,7 +24,7 @@ fn joined<T>(all: impl IntoIterator<Item = T>, mark: &str, text: impl Fn(T) -> S
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 32, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(32), failure_persistence: None, ..ProptestConfig::default() })]
 
     /// An object a row, a line each or in a list, or a list a column: the same COR as in a table.
     #[test]

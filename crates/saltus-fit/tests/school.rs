@@ -3,6 +3,7 @@
 #![allow(clippy::panic, clippy::unwrap_used)] // a test that cannot go on has failed
 
 use proptest::prelude::*;
+use saltus_cases::cases;
 use saltus_fit::{Fit, ReadOptions, Report, Table, TableError, Verdict};
 
 fn read(text: &str) -> Result<Table, TableError> {
@@ -27,7 +28,7 @@ fn heights(e: f64, drop: f64, count: usize) -> Vec<f64> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(100))]
+    #![proptest_config(ProptestConfig::with_cases(cases(100)))]
 
     /// Numbered heights that do not fall, below one stated release, are repeats.
     #[test]

@@ -13,6 +13,7 @@ use std::path::{Path, PathBuf};
 use hound::{SampleFormat, WavSpec, WavWriter};
 use made::{Kind, Made, make};
 use proptest::prelude::*;
+use saltus_cases::cases;
 use saltus_fit::{Contact, Doubt, FindingKind, Fit, Note, ReadOptions, Report, Sound, Table, Verdict};
 
 /// A contact is found if a time is as near to it, s.
@@ -96,7 +97,7 @@ fn a_ball_with_echoes_that_others_recorded() {
 /// --test sound made_sounds` writes the table of docs/use/sound.md.
 #[test]
 fn made_sounds_are_heard_or_refused() {
-    let count: u64 = std::env::var("SOUNDS").ok().map_or(25, |count| count.parse().unwrap());
+    let count: u64 = std::env::var("SOUNDS").ok().map_or(u64::from(cases(25)), |count| count.parse().unwrap());
     let mut table = String::from(
         "| sound | heard | doubted | refused | contacts found | false | COR off, median | 95 % | trusted, off by over 0.02 |\n|---|---|---|---|---|---|---|---|---|\n",
     );
@@ -318,7 +319,7 @@ fn an_hour_of_noise_before_the_drop_hides_nothing() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
+    #![proptest_config(ProptestConfig::with_cases(cases(24)))]
 
     /// The contacts are the same however loud the sound is, whichever way its samples point, and
     /// whenever it begins.

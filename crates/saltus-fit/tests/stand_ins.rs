@@ -6,6 +6,7 @@
 mod typed;
 
 use proptest::prelude::*;
+use saltus_cases::cases;
 use saltus_fit::{Fit, ReadOptions, Table, Verdict};
 use typed::{fit, read, trusted};
 
@@ -86,7 +87,7 @@ const SAYS: &[fn(&str) -> String] = &[
 ];
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 32, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(32), failure_persistence: None, ..ProptestConfig::default() })]
 
     /// Before and after a bounce, whatever the mass: the ratio of energies is e².
     #[test]

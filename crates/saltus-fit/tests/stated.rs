@@ -6,6 +6,7 @@
 mod typed;
 
 use proptest::prelude::*;
+use saltus_cases::cases;
 use saltus_fit::Verdict;
 use typed::{fit, trusted};
 
@@ -16,7 +17,7 @@ fn series(e: f64) -> Vec<String> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 48, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(48), failure_persistence: None, ..ProptestConfig::default() })]
 
     /// A unit is that of the numbers, wherever a record states it.
     #[test]

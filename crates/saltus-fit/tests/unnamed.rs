@@ -6,6 +6,7 @@
 mod typed;
 
 use proptest::prelude::*;
+use saltus_cases::cases;
 use saltus_fit::{Fit, ReadOptions, Report, Table, TableError, Verdict};
 use typed::{fit, read, trusted};
 
@@ -23,7 +24,7 @@ fn drops(e: f64) -> Vec<(f64, f64)> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 24, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(24), failure_persistence: None, ..ProptestConfig::default() })]
 
     /// The name of a file says its columns where it has no names, in either order: a rebound is
     /// lower than its drop.

@@ -6,6 +6,7 @@
 use std::fmt::Write as _;
 
 use proptest::prelude::*;
+use saltus_cases::cases;
 use saltus_fit::{FindingKind, Fit, ReadOptions, Report, Table, Verdict};
 
 fn fit(text: &str, options: &ReadOptions) -> Report {
@@ -41,7 +42,7 @@ fn film(e: f64, per: f64) -> String {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(16))]
+    #![proptest_config(ProptestConfig::with_cases(cases(16)))]
 
     /// A film without a scale needs no rate of frames: its COR is that by any, and the rate that
     /// stands in for it is named.

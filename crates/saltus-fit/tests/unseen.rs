@@ -4,6 +4,7 @@
 #![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
 
 use proptest::prelude::*;
+use saltus_cases::cases;
 use saltus_fit::{Ball, Cor, Fit, ReadOptions, Table, Verdict, Widening};
 
 const G: f64 = 9.81;
@@ -29,7 +30,7 @@ fn cor(heights: &[f64], fit: Fit) -> Cor {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(200))]
+    #![proptest_config(ProptestConfig::with_cases(cases(200)))]
 
     /// Three heights, without any scatter: a zero off by up to 1.9 standard errors or drag up to
     /// the most, not seen, do not lead out of the interval.
@@ -57,7 +58,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(200))]
+    #![proptest_config(ProptestConfig::with_cases(cases(200)))]
 
     /// Three heights with a rebound missing between: a trusted interval holds the COR, and without
     /// a gap nothing is added where the readings tell.
@@ -139,7 +140,7 @@ fn both(e: f64, factor: f64) -> Table {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(200))]
+    #![proptest_config(ProptestConfig::with_cases(cases(200)))]
 
     /// Lengths wrong by up to a tenth, beside times that are right, do not lead out of the
     /// interval; and no more than a tenth is allowed for.

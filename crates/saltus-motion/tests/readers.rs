@@ -5,6 +5,7 @@
 
 use glb::{channels, seen};
 use proptest::prelude::*;
+use saltus_cases::cases;
 use saltus_motion::{Contact, Export, File, Format, Frames, Motion, Piece, Shape, Stretch, Track};
 use serde_json::Value;
 
@@ -184,7 +185,7 @@ fn made(leaps: &[Leap], radius: f64) -> Motion {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(ProptestConfig::with_cases(cases(64)))]
 
     #[test]
     fn what_a_reader_measures_is_at_most_what_is_said(

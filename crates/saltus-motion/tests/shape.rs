@@ -7,6 +7,7 @@ use drop::{G, drop};
 use glb::{channels, seen};
 use gltf::animation::Property;
 use proptest::prelude::*;
+use saltus_cases::cases;
 use saltus_motion::{Contact, Export, Format, Frames, Motion, Piece, Shape, Snap, Stretch, Track};
 use serde_json::Value;
 
@@ -18,7 +19,7 @@ fn frames() -> Frames {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(48))]
+    #![proptest_config(ProptestConfig::with_cases(cases(48)))]
 
     #[test]
     fn the_volume_stays_and_the_floor_is_kept(

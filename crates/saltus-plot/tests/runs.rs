@@ -6,6 +6,7 @@
 use proptest::prelude::*;
 use roxmltree::{Document, Node};
 use saltus::{Clock, Coords, Hybrid, RunOf, Simulation, State};
+use saltus_cases::cases;
 use saltus_instances as _;
 use saltus_plot::{Background, Panels, Phase, PlotError};
 
@@ -111,7 +112,7 @@ fn pulse(t: f64, &(at, high, wide): &(f64, f64, f64)) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
+    #![proptest_config(ProptestConfig::with_cases(cases(24)))]
 
     /// Wherever the run is, the curve is within a third of a px, on peaks that are narrower than
     /// that as well.

@@ -7,6 +7,7 @@ use proptest::prelude::*;
 use saltus::{
     Automaton, Clock, Clocks, Edges, Error, ErrorKind, Hybrid, Limit, Polynomial, Refusal, Simulation, Solution, Stop,
 };
+use saltus_cases::cases;
 use saltus_instances as _;
 
 /// What a model gives in place of a number, from some time on.
@@ -105,7 +106,7 @@ fn is_placed(error: &Error, mode: &str, edge: Option<&str>, t: impl Fn(f64) -> b
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(200))]
+    #![proptest_config(ProptestConfig::with_cases(cases(200)))]
 
     /// Whatever a model gives that is no number, from whichever time: the error says what, where
     /// and when; the run up to it is kept.

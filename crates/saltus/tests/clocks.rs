@@ -6,6 +6,7 @@ use std::ops::ControlFlow;
 
 use proptest::prelude::*;
 use saltus::{About, Automaton, Clock, Clocks, Edges, Entry, ErrorKind, Hybrid, JumpOf, Observer, Refusal, Simulation};
+use saltus_cases::cases;
 use saltus_instances as _;
 
 /// Clocks that count, and one guard of time.
@@ -127,7 +128,7 @@ fn periods() -> impl Strategy<Value = Vec<Integer>> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(400))]
+    #![proptest_config(ProptestConfig::with_cases(cases(400)))]
 
     #[test]
     fn ticks_against_integers(list in periods(), unit in units(), from in -200_i64..200, length in 0_i64..400) {

@@ -4,6 +4,7 @@ mod methods;
 
 use proptest::prelude::*;
 use saltus::{About, Automaton, Edges, ErrorKind, FailedOf, Hybrid, Refusal, RunOf, Simulation, Solution, Stop};
+use saltus_cases::cases;
 
 use methods::methods;
 
@@ -28,7 +29,7 @@ fn run<'a>(ball: &'a Ball<'a>, method: usize, tolerance: f64) -> Result<RunOf<Ba
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(100))]
+    #![proptest_config(ProptestConfig::with_cases(cases(100)))]
 
     /// The last of the bounces comes as with a force that is defined everywhere, within what both
     /// runs' tolerance leaves open.

@@ -13,6 +13,7 @@ use saltus::{
     Automaton, Clock, Edges, Entry, ErrorKind, Filippov, Hybrid, Passage, Polynomial, Refusal, Side, Sides, Simulation,
     Solution, Stats, Stop,
 };
+use saltus_cases::cases;
 
 use methods::methods;
 
@@ -111,7 +112,7 @@ fn ending(kind: Endless, method: usize, most: Most, longest: Option<f64>, end: f
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(300))]
+    #![proptest_config(ProptestConfig::with_cases(cases(300)))]
 
     /// Every limit stops every run, whatever the span: it ends by the limit that was set, or before
     /// it.
@@ -386,7 +387,7 @@ fn no_run_jumps_more_often_than_it_may() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1000))]
+    #![proptest_config(ProptestConfig::with_cases(cases(1000)))]
 
     /// An exact solution that is no number at the end of the span is an error; any other run ends
     /// in a state that is one, an endless one in that at the last time.

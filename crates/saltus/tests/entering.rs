@@ -7,6 +7,7 @@ mod methods;
 
 use proptest::prelude::*;
 use saltus::{Edge, Entry, ErrorKind, Hybrid, Jet, Polynomial, Simulation, Stop};
+use saltus_cases::cases;
 
 use methods::methods;
 
@@ -28,7 +29,7 @@ enum Due {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1000))]
+    #![proptest_config(ProptestConfig::with_cases(cases(1000)))]
 
     /// Of any list of guards the first that is due is taken, or refused, at once.
     #[test]
@@ -121,7 +122,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1000))]
+    #![proptest_config(ProptestConfig::with_cases(cases(1000)))]
 
     /// Of two edges due at once, the first of which changes nothing that the guards read, both are
     /// taken, in the order listed: the second leads away before the first is found to fall on.
@@ -175,7 +176,7 @@ enum Mark {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #![proptest_config(ProptestConfig::with_cases(cases(2000)))]
 
     /// Of two guards that are zero at one time, but for rounding, the one listed first is taken.
     #[test]

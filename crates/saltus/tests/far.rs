@@ -10,6 +10,7 @@ use std::ops::ControlFlow;
 use proptest::prelude::*;
 use saltus::nalgebra::{Vector2, vector};
 use saltus::{Auto, Hybrid, JumpOf, Observer, Simulation, Stop};
+use saltus_cases::cases;
 
 use methods::methods;
 
@@ -47,7 +48,7 @@ fn bounces_as_it_should(ball: &Ball, stepper: Auto, e: f64, height: f64, end: f6
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(48))]
+    #![proptest_config(ProptestConfig::with_cases(cases(48)))]
     /// A parabola's error estimate is zero, and the step would grow tenfold with every arc until
     /// the next crossing was lost in the rounding at its start.
     #[test]

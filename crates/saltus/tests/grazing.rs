@@ -10,6 +10,7 @@ use nalgebra::{Vector2, vector};
 use proptest::prelude::*;
 use saltus::cross::Doubt;
 use saltus::{Certificate, Entry, Filippov, Hybrid, Side, Sides, Simulation};
+use saltus_cases::cases;
 
 use methods::methods;
 
@@ -69,7 +70,7 @@ fn slow_falls(method: usize, tolerance: f64, slope: f64, (rate, fall): (f64, f64
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1000))]
+    #![proptest_config(ProptestConfig::with_cases(cases(1000)))]
 
     /// A fall that is slower than the error of the steps, or than rounding shows, is taken once, or
     /// in doubt.
@@ -179,7 +180,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1000))]
+    #![proptest_config(ProptestConfig::with_cases(cases(1000)))]
 
     /// A motion along a wall and off it, from rest, in any unit: it meets the wall again where it
     /// does, or that is doubted, which it is where the absolute tolerance is large beside it.

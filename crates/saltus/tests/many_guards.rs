@@ -9,6 +9,7 @@ use std::cell::Cell;
 
 use proptest::prelude::*;
 use saltus::{About, Auto, Automaton, Edges, Entry, Refusal, Simulation, State, Stats, Stop};
+use saltus_cases::cases;
 
 use methods::methods;
 
@@ -106,7 +107,7 @@ fn crossings(guards: &[Margin], of: usize, stepper: Auto) -> Vec<f64> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 64, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(64), ..ProptestConfig::default() })]
 
     /// A guard crosses where it does alone, to the bit, whatever others stand before and after it
     /// that do not fall.

@@ -6,6 +6,7 @@ mod methods;
 
 use proptest::prelude::*;
 use saltus::{About, Auto, Automaton, Edges, Refusal, Simulation};
+use saltus_cases::cases;
 
 use methods::methods;
 
@@ -52,7 +53,7 @@ fn landings(court: &Court, start: Balls, stepper: Auto) -> Vec<(usize, f64)> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(40))]
+    #![proptest_config(ProptestConfig::with_cases(cases(40)))]
 
     /// Each lands after twice the speed of its throw, though rounding has left its height on either
     /// side of its floor as the run starts.

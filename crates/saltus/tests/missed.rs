@@ -6,6 +6,7 @@
 use proptest::prelude::*;
 use saltus::cross::Doubt;
 use saltus::{About, Automaton, Edges, Entry, Error, ErrorKind, Fall, Polynomial, Refusal, Simulation, Solution, Stop};
+use saltus_cases::cases;
 
 /// A point that moves at speed 1 towards a wall and, before it, through a line.
 struct Runner {
@@ -82,7 +83,7 @@ fn run(runner: &Runner, start: f64, span: f64) -> Result<(Option<To>, Vec<Doubte
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(128))]
+    #![proptest_config(ProptestConfig::with_cases(cases(128)))]
 
     /// At a jump by another edge, and at the end of the span; by steps and exactly, whatever the
     /// entry.

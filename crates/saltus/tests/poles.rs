@@ -8,6 +8,7 @@ use std::f64::consts::PI;
 use proptest::prelude::*;
 use saltus::cross::Doubt;
 use saltus::{Certificate, Entry, Hybrid, Simulation};
+use saltus_cases::cases;
 use saltus_instances as _;
 
 /// The times of the jumps where `guard` of time falls, and of the doubts that its continuity
@@ -29,7 +30,7 @@ fn falls(guard: impl Fn(f64) -> f64 + Send + Sync, start: f64, span: f64) -> (Ve
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(128))]
+    #![proptest_config(ProptestConfig::with_cases(cases(128)))]
 
     #[test]
     fn a_pole_is_no_crossing(

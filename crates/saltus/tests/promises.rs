@@ -7,6 +7,7 @@ mod methods;
 
 use proptest::prelude::*;
 use saltus::{Edge, Entry, ErrorKind, Hybrid, Signal, Simulation};
+use saltus_cases::cases;
 
 use methods::methods;
 
@@ -69,7 +70,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1000))]
+    #![proptest_config(ProptestConfig::with_cases(cases(1000)))]
 
     /// A guard that is affine where the run is, and cut off or bent outside, is taken where it
     /// falls or refused: it is asked out there as well.

@@ -9,6 +9,7 @@ use std::f64::consts::PI;
 
 use proptest::prelude::*;
 use saltus::{Auto, Coords, Entry, ErrorKind, Hybrid, Polynomial, Simulation, State, Stop};
+use saltus_cases::cases;
 
 use methods::methods;
 
@@ -50,7 +51,7 @@ fn a_guard_is_not_asked_in_another_mode() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(ProptestConfig::with_cases(cases(64)))]
 
     /// sin(ωt + φ) falls once a turn.
     #[test]

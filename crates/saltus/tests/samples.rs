@@ -4,6 +4,7 @@
 
 use proptest::prelude::*;
 use saltus::{Clock, Coords, Hybrid, JumpTable, Sample, Sampler, SamplingError, Simulation};
+use saltus_cases::cases;
 use saltus_instances as _;
 
 type Rows = Vec<Sample<&'static str, f64>>;
@@ -176,7 +177,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(32))]
+    #![proptest_config(ProptestConfig::with_cases(cases(32)))]
 
     /// Whatever the time from row to row, be it far below the spacing of times, a table is made or
     /// refused at once: its rows are those ticks that are on no end by rounding.

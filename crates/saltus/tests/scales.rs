@@ -11,6 +11,7 @@ use saltus::{
     Automaton, Edge, Edges, Entry, ErrorKind, Failed, Filippov, Hybrid, Limit, Refusal, Run, Side, Sides, Simulation,
     Stop,
 };
+use saltus_cases::cases;
 
 use methods::methods;
 
@@ -31,7 +32,7 @@ fn times<M: Copy + PartialEq + fmt::Debug, E: Copy + PartialEq + fmt::Debug, S: 
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(ProptestConfig::with_cases(cases(64)))]
 
     /// Powers of one second are tiny where a motion takes a day, beside a guard's constant.
     #[test]
@@ -203,7 +204,7 @@ impl Automaton for Two {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(48))]
+    #![proptest_config(ProptestConfig::with_cases(cases(48)))]
 
     /// At a limit what does not come to rest goes on: the rounding of the floor hides the last of
     /// the bounces, and the time that they take is not nothing.

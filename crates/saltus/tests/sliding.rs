@@ -5,6 +5,7 @@
 use proptest::prelude::*;
 use saltus::nalgebra::{self, Vector2, vector};
 use saltus::{Auto, Automaton, Dop853, ErrorKind, Filippov, Rodas5P, Side, Sides, Simulation, Stop, Tsit5, TwoSided};
+use saltus_cases::cases;
 
 /// Slides begin and end many times, at every phase, on a surface that moves and is no coordinate:
 /// each slide is one arc, and nothing chatters.
@@ -92,7 +93,7 @@ impl TwoSided for Driven {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #![proptest_config(ProptestConfig::with_cases(cases(2000)))]
 
     /// By every method at every tolerance each slide is one arc, left where the force outgrows the
     /// grip, and not met again at once.

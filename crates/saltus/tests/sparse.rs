@@ -6,6 +6,7 @@ use std::collections::BTreeSet;
 
 use proptest::prelude::*;
 use saltus::{Auto, ErrorKind, Hybrid, Rodas5P, Simulation, Sparsity, Vector};
+use saltus_cases::cases;
 
 /// The rows of a pattern, each with its own coordinate.
 type Rows = Vec<BTreeSet<usize>>;
@@ -56,7 +57,7 @@ fn start(n: usize) -> Vector {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(200))]
+    #![proptest_config(ProptestConfig::with_cases(cases(200)))]
 
     /// Whatever the pattern, it is found from a flow that has it.
     #[test]

@@ -4,6 +4,7 @@
 use proptest::prelude::*;
 use saltus::nalgebra::{self, Vector2, vector};
 use saltus::{Auto, Entry, ErrorKind, Filippov, Hybrid, Jet, Rodas5P, Side, Sides, Simulation, Stop, Tsit5};
+use saltus_cases::cases;
 
 /// h = s (v - w(t)) with a belt of speed w(t) = A sin(ω t + φ) + c: scale, amplitude, frequency,
 /// offset.
@@ -97,7 +98,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1000))]
+    #![proptest_config(ProptestConfig::with_cases(cases(1000)))]
 
     /// A reset onto a plane along which the flow runs, q·f = 0: the plane's guard is rounding from
     /// there on, and nothing more is due.

@@ -8,6 +8,7 @@ use std::f64::consts::PI;
 use proptest::prelude::*;
 use saltus::nalgebra::SVector;
 use saltus::{Entry, Hybrid, Simulation, Stop};
+use saltus_cases::cases;
 use saltus_instances as _;
 
 /// Displacements of five balls that hang side by side, in ball diameters, then their velocities.
@@ -37,7 +38,7 @@ fn a_cradle_swings_on_whatever_its_start() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2000))]
+    #![proptest_config(ProptestConfig::with_cases(cases(2000)))]
 
     /// A guard that is zero on a plateau from `a` to `b`, at whatever speed an exact solution goes
     /// through it: it falls once, where the plateau ends.

@@ -5,6 +5,7 @@ mod methods;
 use proptest::prelude::*;
 use saltus::nalgebra::{self, Vector2, vector};
 use saltus::{Edge, ErrorKind, Failed, Filippov, Hybrid, Run, Sides, Simulation, Stop};
+use saltus_cases::cases;
 
 use methods::methods;
 
@@ -136,7 +137,7 @@ fn relay(phase: f64, units: Units, method: usize) -> Shown {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(200))]
+    #![proptest_config(ProptestConfig::with_cases(cases(200)))]
 
     /// To the last digit: a guard is compared with what it is made of, never with a number.
     #[test]

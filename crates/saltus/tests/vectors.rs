@@ -7,6 +7,7 @@ use saltus::{
     Auto, Automaton, Dop853, Edges, ErrorKind, Hybrid, Op, Refusal, Rodas5P, Series, Simulation, Solution, State, Stop,
     Tsit5, Vector,
 };
+use saltus_cases::cases;
 
 /// Oscillators in a row, each pulled by its neighbours, and a wall that turns the first one round.
 struct Row<S> {
@@ -57,7 +58,7 @@ fn run<S: State>(row: &Row<S>, stepper: Auto, tolerance: f64) -> (Vec<(f64, Vec<
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(ProptestConfig::with_cases(cases(64)))]
 
     /// A vector is integrated as an array of its length is: bit for bit, by every method.
     #[test]

@@ -9,6 +9,7 @@ mod methods;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use saltus::{Auto, Edge, Entry, ErrorKind, Hybrid, Simulation, Stop};
+use saltus_cases::cases;
 
 use methods::methods;
 
@@ -54,7 +55,7 @@ impl Put {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(200))]
+    #![proptest_config(ProptestConfig::with_cases(cases(200)))]
 
     /// A body put on a wall and moving into it, or pressed into it from rest, meets it at once,
     /// though what it meets pushes it back before the first sample of a step.
@@ -117,7 +118,7 @@ fn stacked<'a>(lower: f64, upper: f64, ratio: f64, air: f64) -> Hybrid<'a, [f64;
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(100))]
+    #![proptest_config(ProptestConfig::with_cases(cases(100)))]
 
     /// A stack that lands: its jumps drive each other at one instant, ever slower. The run ends
     /// there by name, or is still on its way above the floor; it never goes on below. A few end in
@@ -163,7 +164,7 @@ const SHAPES: [fn(f64) -> f64; 9] = [
 ];
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 1000, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(1000), rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
 
     /// A guard with the sign of a height has the crossings of the height, up and down, whatever its
     /// shape: where it is left as an odd power of time, it rises more slowly than any difference of

@@ -8,6 +8,7 @@ use saltus::{
     Clock, ErrorKind, Filippov, Linearize, LinearizeSides, Number, Passage, RunOf, Sensitive, Side, Simulation, State,
     Stop, TwoSided, Wrt, saltation,
 };
+use saltus_cases::cases;
 
 use Wrt::{Initial, Parameter};
 
@@ -514,7 +515,7 @@ impl TwoSided for Plane {
 const STEP: f64 = 3e-4;
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 48, max_global_rejects: 100_000, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(48), max_global_rejects: 100_000, ..ProptestConfig::default() })]
 
     /// Of random systems that slide, and perhaps leave and come back, the derivatives by each of
     /// the 17 parameters and both initial values are those of runs beside.

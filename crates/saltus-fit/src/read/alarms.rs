@@ -182,7 +182,7 @@ pub(super) fn leave(table: &mut Table) {
         return;
     }
     table.trials.retain(|trial| name(trial).is_none());
-    // What is said of them is said of nothing else.
+    // What their names change concerns nothing else.
     let theirs = |text: &str| bad.keys().any(|name| name.contains(text.trim_end_matches('…')));
     table.doubts.retain(|doubt| !matches!(doubt, Doubt::Remark { text, .. } if theirs(text)));
     let aside = bad.into_iter().map(|(name, why)| LeftAside::new(Part::Text, name, why));

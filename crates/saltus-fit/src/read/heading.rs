@@ -460,10 +460,7 @@ impl Heading {
                 || inside::of_units(inside)
                 || inside::asks_for_unit(inside))
             {
-                // Feet, a point, inches are no number of either.
-                let parts = inside.split_once('.').filter(|(one, other)| !one.is_empty() && !other.is_empty());
-                let dimension = |unit: &str| Unit::parse(unit).map(|unit| unit.dimension);
-                if parts.is_some_and(|(one, other)| dimension(one).is_some() && dimension(one) == dimension(other)) {
+                if inside::of_two_parts(inside) {
                     left.push_str(&inside.replace('.', ""));
                     continue;
                 }

@@ -322,8 +322,8 @@ fn plain(heading: &Heading) -> bool {
 /// The doubt whether the readings are those that were read, where a column that is not understood
 /// names what they do, a rebound or a speed; or where they are not plainly heights, and one is
 /// called so too, or rises and falls with them from row to row and says something else; `--column`
-/// answers it. So may a coordinate beside another, where no clock makes a track of them: signs alone
-/// do not tell which is the height.
+/// answers it. So may a coordinate beside another, where no clock makes a track of them: signs
+/// alone do not tell which is the height.
 pub(super) fn rival(region: &Region<'_>, columns: &Columns, options: &ReadOptions) -> Option<Doubt> {
     if options.column.is_some() || region.given || region.chosen {
         return None;

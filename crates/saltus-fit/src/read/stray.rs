@@ -108,8 +108,8 @@ fn strays(trials: &[Trial]) -> Vec<Stray> {
     heights.iter().enumerate().filter_map(one).collect()
 }
 
-/// How far falls, from the least to the greatest, scatter as logarithms: twice their middle half, in
-/// which no single one counts; no end where they are few.
+/// How far falls, from the least to the greatest, scatter as logarithms: twice their middle half,
+/// in which no single one counts; no end where they are few.
 fn scatter(falls: &[f64]) -> f64 {
     let n = falls.len();
     if n < SCATTERED { f64::INFINITY } else { 2.0 * (falls[3 * n / 4] - falls[n / 4]) }
@@ -136,8 +136,8 @@ fn range(heights: &[(usize, usize, f64)], usual: Option<f64>) -> (f64, f64) {
 }
 
 /// The reading of a trial that is in another unit, as its place, and the factor that is missing; of
-/// two the one that comes to the usual size. Falls that differ by `unlike` ask for a reason, which a
-/// factor is if with it they differ by less than `alike`.
+/// two the one that comes to the usual size. Falls that differ by `unlike` ask for a reason, which
+/// a factor is if with it they differ by less than `alike`.
 fn in_trial(
     heights: &[(usize, usize, f64)],
     (usual, size): (Option<f64>, f64),

@@ -304,6 +304,13 @@ pub(in crate::read) fn is_sign(text: &str) -> bool {
     !word && end > 0 && joined && letters().count() < SIGN
 }
 
+/// Whether a unit is of two parts of one number: feet, a point, inches are no number of either.
+pub(super) fn of_two_parts(text: &str) -> bool {
+    let dimension = |unit: &str| Unit::parse(unit).map(|unit| unit.dimension);
+    let parts = text.split_once('.').filter(|(one, other)| !one.is_empty() && !other.is_empty());
+    parts.is_some_and(|(one, other)| dimension(one).is_some() && dimension(one) == dimension(other))
+}
+
 /// What is found in a text and taken out of it.
 pub(super) fn taken<T>(text: &mut String, find: fn(&str) -> Option<(T, String)>) -> Option<T> {
     let (found, rest) = find(text)?;
