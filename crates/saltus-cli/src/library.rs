@@ -58,7 +58,7 @@ pub(crate) struct Library {
 
 pub(crate) fn run(args: &Library, quiet: bool) -> Result<ExitCode, Error> {
     args.to.iter().try_for_each(|format| format.takes(args.shown.space())).map_err(Error::new)?;
-    let vary = args.vary.vary();
+    let vary = args.vary.vary()?;
     let keys = vary.keys().map_err(Error::new)?;
     let runs = vary.runs().map_err(Error::new)?;
     if runs > MOST {

@@ -1,8 +1,11 @@
 //! What varies from run to run: what can be asked of it.
 
+use std::path::PathBuf;
+
 use clap::Args as ClapArgs;
 use saltus_scene::vary::{Variation, Vary};
 
+use crate::error::Error;
 use crate::parse::number;
 
 /// What may stand behind --vary.
@@ -18,8 +21,12 @@ Several make a grid, in which the first changes slowest; with --random N each of
 #[derive(Debug, ClapArgs)]
 pub(crate) struct Varying {
     /// A key and its values: FROM:TO:COUNT, FROM:TO:COUNT:log, or a list A,B,C; may be repeated.
-    #[arg(long = "vary", value_name = "KEY=VALUES", required = true)]
+    #[arg(long = "vary", value_name = "KEY=VALUES", required_unless_present = "design")]
     variations: Vec<Variation>,
+    /// A run for each row of a CSV file instead; its headings are keys, such as `ball.height` or
+    /// `ball.height (cm)`.
+    #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["variations", "random"])]
+    design: Option<PathBuf>,
     /// Make so many runs with values drawn evenly from the ranges, evenly in the logarithm for
     /// `log`, instead of all; COUNT does not matter then.
     #[arg(long, value_name = "COUNT", value_parser = number(1_u64..=u64::MAX), allow_hyphen_values = true)]
@@ -30,7 +37,12 @@ pub(crate) struct Varying {
 }
 
 impl Varying {
-    pub(crate) fn vary(&self) -> Vary {
-        Vary { variations: self.variations.clone(), random: self.random, seed: self.seed, rows: false }
+    /// What varies.
+    pub(crate) fn vary(&self) -> Result<Vary, Error> {
+        if let Some(path) = &self.design {
+            let text = std::fs::read_to_string(path).map_err(|error| Error::reading(path, &error))?;
+            return Vary::of_rows(&text).map_err(|error| Error::new(format!("{}: {error}", path.display())));
+        }
+        Ok(Vary { variations: self.variations.clone(), random: self.random, seed: self.seed, rows: false })
     }
 }

@@ -204,6 +204,42 @@ fn what_is_wrong_is_said_before_anything_is_written() {
 }
 
 /// A line, lines, a map, dots; and what cannot be drawn is refused before a run is made.
+/// A design has a run for each of its rows, whatever order they are in, and the rows are those of
+/// the runs by themselves.
+#[test]
+fn a_design_has_a_run_for_each_row() {
+    let place = Place::of(DROP);
+    fs::write(place.path("design.csv"), "restitution,ball.height (cm)\n0.7,80\n0.5,120\n0.6,80\n").unwrap();
+    let (csv, _) = place.done(&["--design", "design.csv"]);
+    assert_eq!(column(&csv, "restitution"), ["0.7", "0.5", "0.6"]);
+    assert_eq!(numbers(&csv, "ball.height_cm"), [80.0, 120.0, 80.0]);
+    let (grid, _) = place.done(&["--vary", "restitution=0.5,0.6,0.7", "--vary", "ball.height=80cm,120cm"]);
+    let rest = |csv: &str, e: &str, h: f64| {
+        let rows =
+            column(csv, "restitution").into_iter().zip(numbers(csv, "ball.height_cm")).zip(numbers(csv, "rest_s"));
+        rows.filter(|((own, height), _)| *own == e && *height == h).map(|(_, at)| at).next().unwrap()
+    };
+    for (e, h) in [("0.7", 80.0), ("0.5", 120.0), ("0.6", 80.0)] {
+        assert_eq!(rest(&csv, e, h), rest(&grid, e, h));
+    }
+    place.done(&["--design", "design.csv", "--into", "rows", "--chunk", "2"]);
+    assert!(place.path("rows/part-2.parquet").exists());
+    for (text, says) in [
+        ("restitution\n", "has no rows"),
+        ("restitution,ball.height\n0.5\n", "line"),
+        ("restitution,ball.height\n0.5,\n", "line 2, `ball.height`: a value is missing"),
+        ("restitution\n\"0.5,0.6\"\n", "one value is wanted"),
+        ("no key\n0.5\n", "is no key"),
+    ] {
+        fs::write(place.path("bad.csv"), text).unwrap();
+        let said = place.refused(&["--design", "bad.csv"]);
+        assert!(said.contains("bad.csv") && said.contains(says), "{text}: {said}");
+    }
+    assert!(place.refused(&["--design", "none.csv"]).contains("none.csv"));
+    assert!(place.refused(&["--design", "design.csv", "--plot", "p.svg", "-o", "t.csv"]).contains("one key"));
+    assert!(place.refused(&["--design", "design.csv", "--vary", "restitution=0.5"]).contains("--vary"));
+}
+
 #[test]
 fn sweeps_are_drawn() {
     let place = Place::of(DROP);

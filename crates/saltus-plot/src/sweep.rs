@@ -36,10 +36,12 @@ pub fn svg(sweep: &Sweep<'_>, rows: &[Row], show: Option<&str>) -> Result<String
     let name = &sweep.headers()[column];
     let (what, measure) = measured(name);
     let vary = sweep.vary();
-    let chart = match (&vary.variations[..], vary.random) {
-        ([key], None) => drawn(start(sweep, key, (&what, measure))?, "", points(rows, 0, column)),
-        ([key], Some(_)) => start(sweep, key, (&what, measure))?.marks(points(rows, 0, column).into_iter().flatten()),
-        ([first, second], None) => {
+    // Neither draws nor the rows of a design follow each other along a key.
+    let apart = vary.random.is_some() || vary.rows;
+    let chart = match (&vary.variations[..], apart) {
+        ([key], false) => drawn(start(sweep, key, (&what, measure))?, "", points(rows, 0, column)),
+        ([key], true) => start(sweep, key, (&what, measure))?.marks(points(rows, 0, column).into_iter().flatten()),
+        ([first, second], false) => {
             let counts = [first, second].map(|key| key.count().unwrap_or(0));
             // The key with words, or else with fewer values, makes the lines.
             let lines = usize::from(!first.is_words() && (second.is_words() || counts[1] <= counts[0]));
@@ -73,10 +75,10 @@ pub fn check(sweep: &Sweep<'_>, show: Option<&str>) -> Result<(), PlotError> {
     if let Some(show) = show.filter(|show| !results().any(|name| name == show)) {
         return Err(PlotError::Column { asked: Some(show.to_owned()), names: results().cloned().collect() });
     }
-    match (&vary.variations[..], vary.random) {
+    match (&vary.variations[..], vary.random.is_some() || vary.rows) {
         ([key], _) => axis(key).map(drop),
-        ([first, second], None) if first.is_words() => axis(second).map(drop),
-        ([first, _], None) => axis(first).map(drop),
+        ([first, second], false) if first.is_words() => axis(second).map(drop),
+        ([first, _], false) => axis(first).map(drop),
         _ => {
             Err(PlotError::Missing("a picture shows a sweep of one key, or a grid of two: draw others from the table"))
         }

@@ -28,7 +28,7 @@ pub(crate) fn run(args: &SweepArgs, quiet: bool) -> Result<ExitCode, Error> {
     let format = format(args)?;
     output::check_apart(args.output.as_deref(), &args.scene)?;
     let (name, toml) = read(&args.scene)?;
-    let vary = args.vary.vary();
+    let vary = args.vary.vary()?;
     let end = ending(args.until, args.most_jumps);
     // An error in the first run is one of the sweep, and ends it before anything is written.
     let sweep = Sweep::new(&name, &toml, &vary, end, format, args.columns.as_deref()).map_err(Error::new)?;

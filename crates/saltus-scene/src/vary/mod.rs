@@ -44,6 +44,50 @@ impl Vary {
         Ok(Self { variations, random: None, seed: 1, rows: false })
     }
 
+    /// A run for each row of a table, as designs of experiments have: CSV, a key in each heading,
+    /// `ball.height`, or a key and its unit, `ball.height (cm)`.
+    ///
+    /// ```
+    /// use saltus_scene::vary::Vary;
+    /// let vary = Vary::of_rows("restitution,ball.height (cm)\n0.5,120\n0.7,80\n")?;
+    /// assert_eq!((vary.runs()?, vary.says(1)), (2, "restitution = 0.7, ball.height = 80.0 cm".to_owned()));
+    /// # Ok::<(), saltus_scene::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error`] with the line for a row of another length than the headings and for a value that
+    /// is missing, and for what is no key or no value; for a table without rows.
+    pub fn of_rows(text: &str) -> Result<Self, Error> {
+        let mut reader =
+            csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.trim_start_matches('\u{feff}').as_bytes());
+        let headings: Vec<String> = reader.headers().map_err(Error::new)?.iter().map(str::to_owned).collect();
+        let mut columns: Vec<Vec<String>> = vec![Vec::new(); headings.len()];
+        for record in reader.records() {
+            let record = record.map_err(Error::new)?;
+            for ((cell, heading), column) in record.iter().zip(&headings).zip(&mut columns) {
+                if cell.is_empty() || cell.contains([',', ':']) {
+                    let line = record.position().map_or(0, csv::Position::line);
+                    let what = if cell.is_empty() { "a value is missing" } else { "one value is wanted" };
+                    return Err(Error::new(format!("line {line}, `{heading}`: {what}: a run takes one of each key")));
+                }
+                column.push(cell.to_owned());
+            }
+        }
+        if columns.first().is_none_or(Vec::is_empty) {
+            return Err(Error::new("the design has no rows: write the keys in the first line and a run in each below"));
+        }
+        let variation = |(heading, cells): (&String, &Vec<String>)| {
+            let (key, unit) = match heading.split_once('(') {
+                Some((key, unit)) => (key.trim(), format!(" {}", unit.trim_end_matches(')').trim())),
+                None => (heading.as_str(), String::new()),
+            };
+            let cells: Vec<String> = cells.iter().map(|cell| format!("{cell}{unit}")).collect();
+            format!("{key}={}", cells.join(",")).parse().map_err(Error::new)
+        };
+        let variations = headings.iter().zip(&columns).map(variation).collect::<Result<_, _>>()?;
+        Ok(Self { variations, random: None, seed: 1, rows: true })
+    }
+
     /// The variations as they were written.
     #[must_use]
     pub fn texts(&self) -> Vec<&str> {
