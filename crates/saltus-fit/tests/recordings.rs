@@ -6,7 +6,6 @@
 mod noise;
 
 use noise::Noise;
-use saltus_cases::cases;
 use saltus_fit::{Fit, ReadOptions, Report, Severity, Table, Verdict};
 
 const G: f64 = 9.81;
@@ -230,7 +229,7 @@ fn rounded_times_of_frames_are_restored() {
         [(30.0, 2, 0.01), (29.97, 2, 0.01), (30.0, 3, 0.001), (60.0, 2, 0.01), (240.0, 3, 0.001)]
     {
         let (mut held, mut narrower) = (0, 0);
-        for run in 0..cases(24) {
+        for run in 0..24 {
             let start = 0.37 + noise.uniform();
             let (mut exact, mut rounded) = ("time_s,height_m\n".to_owned(), "time_s,height_m\n".to_owned());
             // A frame that the tracker lost, but not where it touches.
@@ -282,7 +281,7 @@ fn rounded_times_of_frames_are_restored() {
 fn where_the_error_of_reading_decides_it_is_said() {
     let mut noise = Noise(8);
     let mut turned = 0;
-    for _ in 0..cases(120) {
+    for _ in 0..120 {
         let (mut t, mut lasts, mut text) = (0.6, 0.96, "time_s\n".to_owned());
         for _ in 0..12 {
             text += &format!("{:.4}\n", t + noise.normal(0.003));

@@ -59,7 +59,7 @@ fn remarks_that_change_the_readings_are_doubts() {
 fn remarks_that_change_nothing_are_none() {
     let (found, all) = trusted_of(HARMLESS.lines().map(last));
     println!("{} of {all} are trusted", found.len());
-    assert!(found.len() * 100 >= 94 * all, "{} of {all}", found.len());
+    assert!(found.len() * 100 >= 95 * all, "{} of {all}", found.len());
 }
 
 fn change(report: &Report) -> Option<Change> {

@@ -1,12 +1,12 @@
 //! Remarks that change what the readings beside them mean: the ball was thrown, the rule slipped,
 //! every other bounce is missing. `alarms.tsv` lists how people say so.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::sync::OnceLock;
 
 use super::aside::{Part, Why};
 use super::clause::frame_rate;
-use super::grid::shown;
+use super::grid::{Grid, shown};
 use super::heading::Heading;
 use super::phrases::{DENIED, denies};
 use super::region::Region;
@@ -19,6 +19,15 @@ use crate::finding::{Change, Doubt};
 /// A change, a tab, a phrase in lower case without accents, whose last word may go on where it ends
 /// in `*`.
 const ALARMS: &str = include_str!("alarms.tsv");
+
+/// Words of prose that change nothing, one a line, in the order of their bytes.
+const PLAIN: &str = include_str!("plain.txt");
+
+/// Whether a word says nothing of numbers, wherever it stands.
+fn is_plain(word: &str) -> bool {
+    static ALL: OnceLock<Vec<&'static str>> = OnceLock::new();
+    ALL.get_or_init(|| PLAIN.lines().collect()).binary_search(&word).is_ok()
+}
 
 /// A remark of which so many words are not understood tells more than who measured, where and with
 /// what: one in a hundred of those that change nothing has as many.
@@ -101,11 +110,13 @@ fn changes(text: &str) -> Vec<Change> {
 fn tells(text: &str) -> bool {
     let named = |(n, word): &(usize, Word)| *n > 0 && word.text.starts_with(char::is_uppercase);
     let words = split(&unaddressed(text)).into_iter().enumerate().filter(|word| !named(word));
-    words.filter(|(_, word)| matches!(word.kind, Kind::Unknown)).count() >= STORY
+    let strange = |word: &Word| matches!(word.kind, Kind::Unknown) && !is_plain(&folded(&word.text));
+    words.filter(|(_, word)| strange(word)).count() >= STORY
 }
 
+/// How many words a text has, numbers not counted.
 fn words(text: &str) -> usize {
-    text.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).count()
+    text.split(|c: char| !c.is_alphanumeric()).filter(|word| word.starts_with(char::is_alphabetic)).count()
 }
 
 /// Why what bears a name is no reading: `Simulation`, `dynamic model A`, `wrong ball, do not use`.
@@ -119,64 +130,81 @@ pub(super) fn named(name: &str) -> Option<Why> {
     said.or(predicted.then_some(Why::Predicted))
 }
 
-/// The remarks in and around a table, with their lines: what is above other tables is theirs, and
-/// what is in a row that does not count is about it.
-fn remarks<'a>(region: &'a Region<'_>, table: &Table, others: &[&Region<'_>]) -> Vec<(&'a str, Option<u64>)> {
-    let grid = region.view.grid;
-    let void =
-        |line: u64| table.left_aside.iter().any(|a| a.what == Part::Row && a.why == Why::Void && a.line == Some(line));
-    let theirs = |line: u64| others.iter().any(|other| other.aside.iter().any(|aside| aside.line == Some(line)));
-    let header = |row: usize| row == region.header_row || others.iter().any(|other| row == other.header_row);
-    let rows =
-        (0..grid.rows().min(ROWS)).filter(|&row| !header(row) && !void(grid.line(row)) && !theirs(grid.line(row)));
-    let cells = rows.flat_map(|row| (0..grid.width(row)).map(move |n| (grid.cell(row, n), Some(grid.line(row)))));
-    // A word by itself names something: a ball, an event.
-    let cells = cells.filter(|(cell, _)| cell.trim().contains(char::is_whitespace));
-    cells.chain(grid.comments().take(ROWS).map(|(line, text)| (text, Some(line)))).collect()
+/// A remark in or around the tables of a text.
+pub(super) struct Remark<'a> {
+    text: &'a str,
+    line: Option<u64>,
+    /// The table that it stands above.
+    above: Option<usize>,
+    changes: Vec<Change>,
 }
 
-/// The doubt about a remark, or a name of the table, that changes what its readings mean.
-pub(super) fn doubt(region: &Region<'_>, table: &Table, others: &[&Region<'_>]) -> Option<Doubt> {
+impl<'a> Remark<'a> {
+    fn of(text: &'a str, line: Option<u64>) -> Self {
+        let mut changes = changes(text);
+        changes.extend(tells(text).then_some(Change::Unclear));
+        Self { text, line, above: None, changes }
+    }
+
+    fn doubt(&self, heeded: impl Fn(&str, Change) -> bool) -> Option<Doubt> {
+        let change = self.changes.iter().copied().find(|change| heeded(self.text, *change))?;
+        Some(Doubt::Remark { text: shown(self.text.trim()), line: self.line, change })
+    }
+}
+
+/// The remarks in and around the tables of a text.
+pub(super) fn remarks<'a>(grid: &'a Grid<'_>, regions: &[Region<'_>]) -> Vec<Remark<'a>> {
+    let headers: HashSet<usize> = regions.iter().map(|region| region.header_row).collect();
+    let lines =
+        regions.iter().enumerate().flat_map(|(n, region)| region.aside.iter().map(move |aside| (aside.line, n)));
+    let above: HashMap<Option<u64>, usize> = lines.collect();
+    let rows = (0..grid.rows().min(ROWS)).filter(|row| !headers.contains(row));
+    let cells = rows.flat_map(|row| (0..grid.width(row)).map(move |n| (grid.cell(row, n), Some(grid.line(row)))));
+    // A word by itself names something: a ball, an event, a unit.
+    let cells = cells.filter(|(cell, _)| words(cell) > 1);
+    let texts = cells.chain(grid.comments().take(ROWS).map(|(line, text)| (text, Some(line))));
+    texts.map(|(text, line)| Remark { above: above.get(&line).copied(), ..Remark::of(text, line) }).collect()
+}
+
+/// The doubt about a remark, or a name of table `n`, that changes what its readings mean: what is
+/// above another table is about that, and what is in a row that does not count about the row.
+pub(super) fn doubt((n, region): (usize, &Region<'_>), table: &Table, remarks: &[Remark<'_>]) -> Option<Doubt> {
     let readings = || table.trials.iter().flat_map(|trial| &trial.readings).filter(|r| r.event != Event::Sample);
     // A clock matters where flights are compared with heights; a film shows how it runs.
     let both = readings().any(|r| r.time.is_some()) && readings().any(|r| r.height.is_some());
     let timed = both || table.trials.iter().any(|trial| trial.timed.is_some());
-    let remarks = remarks(region, table, others);
+    let void: HashSet<Option<u64>> =
+        table.left_aside.iter().filter(|a| a.what == Part::Row && a.why == Why::Void).map(|a| a.line).collect();
+    let own = |remark: &&Remark<'_>| remark.above.is_none_or(|of| of == n) && !void.contains(&remark.line);
     // One rate is that of a slow camera; a second one that at which it was played.
-    let mut rates = remarks.iter().flat_map(|(text, _)| text.split([',', ';'])).filter_map(frame_rate);
+    let mut rates = remarks.iter().filter(own).flat_map(|r| r.text.split([',', ';'])).filter_map(frame_rate);
     let played = rates.next().is_some_and(|first| rates.any(|rate| rate != first));
-    let heeded = |text: &str, change: &Change| match change {
+    let heeded = |text: &str, change: Change| match change {
         Change::Clock => timed && (played || frame_rate(text).is_none()),
         Change::Shifted => region.zero.is_none(),
         _ => true,
     };
-    let remark = |(text, line): (&str, Option<u64>)| {
-        let change = changes(text).into_iter().find(|change| heeded(text, change));
-        let change = change.or_else(|| tells(text).then_some(Change::Unclear))?;
-        Some(Doubt::Remark { text: shown(text.trim()), line, change })
-    };
     let grid = region.view.grid;
     let names = grid.tab.into_iter().chain([region.label.as_str(), stem(grid.name)]);
     let name = |text: &str| {
-        if words(text) >= SENTENCE {
-            return remark((text, None));
-        }
-        let of_all = |change: &Change| match change {
+        let count = words(text);
+        let of_all = |text: &str, change: Change| match change {
             Change::Thrown | Change::Medium | Change::Unread => true,
-            Change::Void => words(text) > 1,
-            _ => false,
+            Change::Void => count > 1,
+            _ => count >= SENTENCE && heeded(text, change),
         };
-        let change = changes(text).into_iter().find(of_all)?;
-        Some(Doubt::Remark { text: shown(text), line: None, change })
+        Remark::of(text, None).doubt(of_all)
     };
-    remarks.iter().copied().find_map(remark).or_else(|| names.into_iter().find_map(name))
+    remarks.iter().filter(own).find_map(|remark| remark.doubt(heeded)).or_else(|| names.into_iter().find_map(name))
 }
 
 /// Leaves groups and settings aside whose names say that they are no readings, where others remain.
+/// Where there are more names than rows are looked through, they are numbers.
 pub(super) fn leave(table: &mut Table) {
     let names = table.trials.iter().flat_map(|trial| [&trial.group, &trial.setting]);
-    let apart: HashSet<String> = names.cloned().collect();
-    let bad: HashMap<String, Why> = apart.into_iter().filter_map(|name| named(&name).map(|why| (name, why))).collect();
+    let apart: BTreeSet<String> = names.cloned().collect();
+    let bad = apart.into_iter().take(ROWS).filter_map(|name| named(&name).map(|why| (name, why)));
+    let bad: BTreeMap<String, Why> = bad.collect();
     let name = |trial: &Trial| [&trial.group, &trial.setting].into_iter().find(|name| bad.contains_key(*name)).cloned();
     if bad.is_empty() || table.trials.iter().all(|trial| name(trial).is_some()) {
         return;
@@ -185,6 +213,5 @@ pub(super) fn leave(table: &mut Table) {
     // What their names change concerns nothing else.
     let theirs = |text: &str| bad.keys().any(|name| name.contains(text.trim_end_matches('…')));
     table.doubts.retain(|doubt| !matches!(doubt, Doubt::Remark { text, .. } if theirs(text)));
-    let aside = bad.into_iter().map(|(name, why)| LeftAside::new(Part::Text, name, why));
-    table.left_aside.extend(aside);
+    table.left_aside.extend(bad.into_iter().map(|(name, why)| LeftAside::new(Part::Text, name, why)));
 }

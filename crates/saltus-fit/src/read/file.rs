@@ -123,6 +123,7 @@ fn joined_up<'a>(
         stated.push(Note::Rate { rate: fps, line }.into());
     }
     filmed(&mut regions, metadata.frame_rate);
+    let remarks = alarms::remarks(grid, &regions);
     let (mut parts, mut failed, mut nothing, mut aside) = (Vec::new(), None, None, Vec::new());
     for n in 0..regions.len() {
         let (region, title) = (&mut regions[n], &titles[n]);
@@ -147,9 +148,7 @@ fn joined_up<'a>(
                 let placed = !table.metadata.speeds && table.trials.iter().any(|t| t.readings.iter().any(placed));
                 table.doubts.extend(datum.filter(|_| placed).and_then(Datum::doubt));
                 table.doubts.extend(title::unmet(title, &table).filter(|_| !answered && placed));
-                let others: Vec<&Region<'_>> =
-                    regions.iter().enumerate().filter(|(m, _)| *m != n).map(|(_, r)| r).collect();
-                table.doubts.extend(alarms::doubt(&regions[n], &table, &others));
+                table.doubts.extend(alarms::doubt((n, &regions[n]), &table, &remarks));
                 parts.push((regions[n].label.clone(), table));
             }
             // A table beside another, of something else.

@@ -342,12 +342,17 @@ pub(super) fn rival(region: &Region<'_>, columns: &Columns, options: &ReadOption
     let aside = columns.columns.iter().enumerate().filter(|(_, c)| unknown(c));
     let high = |v: &Value| v.what == What::Height && v.at != At::Release && !(v.position && tracked);
     let read = |v: &Value| v.role == Role::Reading && (high(v) || v.what == What::Speed);
+    // What is a small part of the readings is their error.
+    let kin = |n: usize, of: usize| {
+        let pairs = region.rows.iter().filter_map(|&row| Some(number(row, n)? / number(row, of)?));
+        median(&mut pairs.collect::<Vec<f64>>()).is_some_and(|part| part > USUAL.start * USUAL.start)
+    };
     let with = |(n, column): &(usize, &Column)| {
         let one = |c: &Column| dimension(column).is_none_or(|own| dimension(c).is_none_or(|other| own == other));
         columns.values().filter(|(_, c, v)| read(v) && one(c)).find(|(of, c, v)| {
             let named = [Atom::Rebound, Atom::Speed].iter().any(|a| column.heading.has(*a) && c.heading.has(*a));
             if named || plain(&c.heading) || v.what != What::Height {
-                return named;
+                return named && kin(*n, *of);
             }
             // `Ceiling height` beside `Light height`: named alike.
             if column.heading.has(Atom::Height) {

@@ -205,7 +205,10 @@ pub(super) fn names_no_readings(text: &str) -> bool {
     let heading = Heading::parse(text);
     // Among words that are not understood a part of something is that of anything: `kept in water`;
     // and a log is a record.
-    let silent = |word: &Word| word.is(Atom::Note) || word.is(Atom::Ratio) && !heading.unknown.is_empty();
+    // Who signs, `LG Jonas`, works nothing out.
+    let signed = |word: &Word| word.is(Atom::Derived) && heading.has(Atom::Person);
+    let silent =
+        |word: &Word| word.is(Atom::Note) || signed(word) || word.is(Atom::Ratio) && !heading.unknown.is_empty();
     let exact = |atom: Atom| split(text).iter().any(|word| word.is(atom) && !silent(word));
     let slip = |atom: Atom| {
         let meant = |word: &Word| misspelt(&folded(&word.text)).is_some_and(|(_, atoms)| atoms.contains(&atom));
@@ -257,16 +260,17 @@ pub(super) fn doubted(region: &Region<'_>, table: &mut Table) {
     let felt = table.notes.iter().any(|note| matches!(note.kind, Note::Felt { .. }));
     // What was aimed at, and stands behind its name itself, is none of the readings.
     let aimed = |text: &str| {
-        text.split_once(':').or_else(|| text.split_once(" - ")).is_some_and(|(name, aim)| {
+        text.split_once(':').is_some_and(|(name, aim)| {
             let by = Heading::parse(name).turned_by();
             let stated = aim.contains(|c: char| c.is_ascii_digit()) || !Heading::parse(aim).names_anything();
-            by == [Atom::Goal] && (stated || split(aim).len() > TITLE)
+            by == [Atom::Goal] && stated
         })
     };
     // In a sentence a word turns nothing by itself: `corrected for parallax`.
     let sentence = |text: &str| {
         let words = split(text);
-        words.len() > TITLE && words.iter().any(|word| matches!(word.kind, Kind::Unknown))
+        let named = text.split_once(':').is_some_and(|(name, _)| turned(name));
+        !named && words.len() > TITLE && words.iter().any(|word| matches!(word.kind, Kind::Unknown))
     };
     let tells = |text: &str| turned(text) && (!felt || wanted(text)) && !aimed(text) && !sentence(text);
     let titles = |aside: &&LeftAside| match row(aside) {
