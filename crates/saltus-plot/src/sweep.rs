@@ -13,7 +13,7 @@
 //! ```
 
 use saltus_scene::sweep::{Row, Sweep};
-use saltus_scene::vary::Variation;
+use saltus_scene::vary::{Variation, Vary};
 
 use crate::{Background, Chart, Map, Measure, PlotError, Stroke};
 
@@ -36,9 +36,7 @@ pub fn svg(sweep: &Sweep<'_>, rows: &[Row], show: Option<&str>) -> Result<String
     let name = &sweep.headers()[column];
     let (what, measure) = measured(name);
     let vary = sweep.vary();
-    // Neither draws nor the rows of a design follow each other along a key.
-    let apart = vary.random.is_some() || vary.rows;
-    let chart = match (&vary.variations[..], apart) {
+    let chart = match (&vary.variations[..], apart(vary)) {
         ([key], false) => drawn(start(sweep, key, (&what, measure))?, "", points(rows, 0, column)),
         ([key], true) => start(sweep, key, (&what, measure))?.marks(points(rows, 0, column).into_iter().flatten()),
         ([first, second], false) => {
@@ -75,7 +73,7 @@ pub fn check(sweep: &Sweep<'_>, show: Option<&str>) -> Result<(), PlotError> {
     if let Some(show) = show.filter(|show| !results().any(|name| name == show)) {
         return Err(PlotError::Column { asked: Some(show.to_owned()), names: results().cloned().collect() });
     }
-    match (&vary.variations[..], vary.random.is_some() || vary.rows) {
+    match (&vary.variations[..], apart(vary)) {
         ([key], _) => axis(key).map(drop),
         ([first, second], false) if first.is_words() => axis(second).map(drop),
         ([first, _], false) => axis(first).map(drop),
@@ -83,6 +81,11 @@ pub fn check(sweep: &Sweep<'_>, show: Option<&str>) -> Result<(), PlotError> {
             Err(PlotError::Missing("a picture shows a sweep of one key, or a grid of two: draw others from the table"))
         }
     }
+}
+
+/// Whether runs do not follow each other along a key: draws, and the rows of a design.
+const fn apart(vary: &Vary) -> bool {
+    vary.random.is_some() || vary.rows
 }
 
 /// The place of the result among the headings.

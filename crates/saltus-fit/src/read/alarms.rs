@@ -4,10 +4,14 @@
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use std::sync::OnceLock;
 
+use serde::Deserialize;
+use serde::de::{IntoDeserializer, value};
+
 use super::aside::{Part, Why};
 use super::clause::frame_rate;
 use super::grid::{Grid, shown};
 use super::heading::Heading;
+use super::listed::Listed;
 use super::phrases::{DENIED, denies};
 use super::region::Region;
 use super::said::stem;
@@ -20,14 +24,8 @@ use crate::finding::{Change, Doubt};
 /// in `*`.
 const ALARMS: &str = include_str!("alarms.tsv");
 
-/// Words of prose that change nothing, one a line, in the order of their bytes.
-const PLAIN: &str = include_str!("plain.txt");
-
-/// Whether a word says nothing of numbers, wherever it stands.
-fn is_plain(word: &str) -> bool {
-    static ALL: OnceLock<Vec<&'static str>> = OnceLock::new();
-    ALL.get_or_init(|| PLAIN.lines().collect()).binary_search(&word).is_ok()
-}
+/// Words of prose that say nothing of numbers, wherever they stand.
+static PLAIN: Listed = Listed::new(include_str!("plain.txt"));
 
 /// A remark of which so many words are not understood tells more than who measured, where and with
 /// what: one in a hundred of those that change nothing has as many.
@@ -56,25 +54,19 @@ impl Rest {
     }
 }
 
+/// The lines of the file, each with what it changes.
+fn entries() -> impl Iterator<Item = (Result<Change, value::Error>, &'static str)> {
+    let lines = ALARMS.lines().filter(|line| !line.starts_with('#')).filter_map(|line| line.split_once('\t'));
+    lines.map(|(kind, phrase)| (Change::deserialize(kind.into_deserializer()), phrase))
+}
+
 /// The phrases by their first words.
 fn phrases() -> &'static HashMap<&'static str, Vec<Rest>> {
     static ALL: OnceLock<HashMap<&'static str, Vec<Rest>>> = OnceLock::new();
     ALL.get_or_init(|| {
-        let changes = [
-            Change::Thrown,
-            Change::Medium,
-            Change::Counted,
-            Change::Shifted,
-            Change::Void,
-            Change::Unread,
-            Change::Clock,
-            Change::Order,
-            Change::Changed,
-            Change::Unsure,
-        ];
         let mut all: HashMap<&str, Vec<Rest>> = HashMap::new();
-        for (kind, phrase) in ALARMS.lines().filter_map(|line| line.split_once('\t')) {
-            let Some(&change) = changes.iter().find(|change| **change == *kind) else { continue };
+        for (change, phrase) in entries() {
+            let Ok(change) = change else { continue };
             let mut words = phrase.trim_end_matches('*').split(' ');
             let first = words.next().unwrap_or_default();
             all.entry(first).or_default().push(Rest { change, words: words.collect(), open: phrase.ends_with('*') });
@@ -110,7 +102,7 @@ fn changes(text: &str) -> Vec<Change> {
 fn tells(text: &str) -> bool {
     let named = |(n, word): &(usize, Word)| *n > 0 && word.text.starts_with(char::is_uppercase);
     let words = split(&unaddressed(text)).into_iter().enumerate().filter(|word| !named(word));
-    let strange = |word: &Word| matches!(word.kind, Kind::Unknown) && !is_plain(&folded(&word.text));
+    let strange = |word: &Word| matches!(word.kind, Kind::Unknown) && !PLAIN.has(&folded(&word.text));
     words.filter(|(_, word)| strange(word)).count() >= STORY
 }
 
@@ -214,4 +206,22 @@ pub(super) fn leave(table: &mut Table) {
     let theirs = |text: &str| bad.keys().any(|name| name.contains(text.trim_end_matches('…')));
     table.doubts.retain(|doubt| !matches!(doubt, Doubt::Remark { text, .. } if theirs(text)));
     table.left_aside.extend(bad.into_iter().map(|(name, why)| LeftAside::new(Part::Text, name, why)));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_phrase_changes_something_and_is_found() {
+        assert!(PLAIN.is_in_order() && PLAIN.words().iter().all(|word| folded(word) == *word));
+        for (change, phrase) in entries() {
+            let change = change.unwrap();
+            assert_eq!(folded(phrase), phrase);
+            let bare = phrase.trim_end_matches('*');
+            let rests = &phrases()[bare.split(' ').next().unwrap()];
+            let words: Vec<&str> = bare.split(' ').collect();
+            assert!(rests.iter().any(|rest| rest.change == change && rest.stands(true, &words)), "{phrase}");
+        }
+    }
 }

@@ -23,6 +23,7 @@ mod judged;
 mod lasting;
 mod layout;
 mod limits;
+mod listed;
 mod named;
 mod old_workbook;
 mod open_workbook;

@@ -3,11 +3,13 @@
 use std::collections::HashMap;
 use std::sync::OnceLock;
 
+use super::listed::Listed;
+
 /// A word a line, a tab, its meanings.
 const WORDS: &str = include_str!("words.tsv");
 
-/// Given names of people, one a line, in the order of their bytes.
-const NAMES: &str = include_str!("names.txt");
+/// Given names of people.
+static NAMES: Listed = Listed::new(include_str!("names.txt"));
 
 /// A meaning of a word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -226,18 +228,12 @@ fn beginning(word: &str) -> impl Iterator<Item = (&'static str, &'static [Atom])
     word.chars().next().and_then(|letter| all.get(&letter)).into_iter().flatten().copied()
 }
 
-/// Whether a word is the given name of a person.
-fn is_given(word: &str) -> bool {
-    static ALL: OnceLock<Vec<&'static str>> = OnceLock::new();
-    ALL.get_or_init(|| NAMES.lines().collect()).binary_search(&word).is_ok()
-}
-
 /// The meanings of a word, or of two parted by a blank, in lower case without accents; `None` if it
 /// is not known.
 pub(super) fn meanings(word: &str) -> Option<&'static [Atom]> {
     static ALL: OnceLock<HashMap<&'static str, &'static [Atom]>> = OnceLock::new();
     let known = ALL.get_or_init(|| words().collect()).get(word).copied();
-    known.or_else(|| is_given(word).then_some(&[Atom::Person]))
+    known.or_else(|| NAMES.has(word).then_some(&[Atom::Person]))
 }
 
 /// The signs of notes below a table.
@@ -454,6 +450,12 @@ mod tests {
             assert!(!names.is_empty() && names.iter().all(|name| Atom::of(name).is_some()), "{word}: {names:?}");
         }
         assert!(seen.len() > 400);
+    }
+
+    #[test]
+    fn names_are_in_order_and_have_no_other_meaning() {
+        assert!(NAMES.is_in_order() && NAMES.words().iter().all(|name| folded(name) == *name));
+        assert!(NAMES.words().iter().all(|name| words().all(|(word, _)| word != *name)));
     }
 
     #[test]
