@@ -1,11 +1,8 @@
 //! Where jumps accumulate: the two tanks of the textbooks, and what the rounding of coordinates
 //! makes of a limit.
 
-#![allow(clippy::unwrap_used, clippy::panic)] // a test that cannot go on has failed
-
 use saltus::nalgebra::{Vector2, vector};
 use saltus::{Cause, Hybrid, Simulation, Stop};
-use saltus_instances as _;
 
 /// Inflow and leaks, marks and volumes at the start.
 type Case = (f64, [f64; 2], [f64; 2], [f64; 2]);

@@ -1,8 +1,6 @@
 //! What accuracy costs: the advice keeps its promise against solutions that the advice does not
 //! know.
 
-#![allow(clippy::unwrap_used, clippy::panic, clippy::expect_used)] // a test that cannot go on has failed
-
 use proptest::prelude::*;
 use saltus_bounce::flight::{LinearDragFlight, VerticalFlight};
 use saltus_cases::cases;

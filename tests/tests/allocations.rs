@@ -3,13 +3,10 @@
 //! Counting allocations takes an allocator of our own, and that takes `unsafe`; so they are counted
 //! by a library.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
 use allocation_counter::measure;
 use saltus::nalgebra::{Vector2, vector};
 use saltus::{Auto, Dop853, Hybrid, Simulation, State, Tsit5, Vector};
 use saltus_bounce::{Ball, Cor, Mode};
-use saltus_instances as _;
 
 #[test]
 fn exact_arcs() {

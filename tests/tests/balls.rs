@@ -1,7 +1,5 @@
 //! Vertical balls, their flight and restitution composed by type: costs, laws.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
 use saltus::nalgebra::{Vector2, vector};
 use saltus::{About, Automaton, Edges, Fall, Jump, Limit, Refusal, Run, Simulation, Solution, State, Stats};
 use saltus_bounce::flight::{LinearDragFlight, QuadraticDragFlight, VacuumFlight};

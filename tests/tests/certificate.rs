@@ -1,15 +1,12 @@
 //! What a run says of its own searches: doubts exactly where a crossing may have been missed, and
 //! nowhere else.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
 use saltus::cross::Doubt;
 use saltus::nalgebra::{Vector2, vector};
 use saltus::{
     Automaton, Certificate, Edges, Hybrid, Invertible, Jump, JumpOf, Polynomial, Refusal, Reversed, Simulation, Stop,
     TrajectoryOf,
 };
-use saltus_instances as _;
 
 fn ball() -> Hybrid<'static, Vector2<f64>> {
     Hybrid::new().mode("flight", |_t, x: &Vector2<f64>| vector![x[1], -9.8]).edge(

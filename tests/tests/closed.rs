@@ -1,8 +1,6 @@
 //! Flows known by a formula: a ball with drag, its formula given with and without the time of its
 //! fall, and stepped.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
 use proptest::prelude::*;
 use saltus::nalgebra::{Vector2, vector};
 use saltus::{Automaton, Dop853, Edges, Fall, Jump, Refusal, Simulation, Solution, Stop};

@@ -1,7 +1,5 @@
 //! Contact that takes time: its cost, its rigid limit, what it loses.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
 use proptest::prelude::*;
 use saltus::nalgebra::Vector2;
 use saltus::{Auto, Dop853, Rodas5P, Run, RunOf, Simulation, Stop, Tsit5};

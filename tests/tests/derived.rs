@@ -1,14 +1,11 @@
 //! Structs of numbers as states: by name in flows, tables and errors.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
 use proptest::prelude::*;
 use saltus::nalgebra::{Vector3, vector};
 use saltus::{
     Automaton, Clock, Clocks, Edges, ErrorKind, Hybrid, Lift, Linearize, Number, Over, Refusal, Sensitive, Simulation,
     State, Wrt,
 };
-use saltus_instances as _;
 
 /// A buck converter: coil and capacitor, and the time since its switch was closed.
 #[derive(Clone, Copy, Debug, PartialEq, State, serde::Serialize, serde::Deserialize)]

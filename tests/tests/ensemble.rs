@@ -1,14 +1,11 @@
 //! Many runs at once: the same on any number of threads, in order, ended when it is asked.
 
-#![allow(clippy::unwrap_used, clippy::panic)] // a test that cannot go on has failed
-
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::ThreadPoolBuilder;
 use saltus::nalgebra::{Vector2, vector};
 use saltus::{Error, ErrorKind, Hybrid, Simulation, ensemble};
-use saltus_instances as _;
 
 /// A ball with drag that falls from a height of its own; the 17th starts where no number is.
 fn last_impact(k: usize) -> Result<[u64; 3], Error> {

@@ -1,7 +1,5 @@
 //! What a newcomer reads when a run cannot start, cannot go on, or ends.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
 use std::ops::{ControlFlow, Range};
 
 use saltus::nalgebra::{Vector2, vector};
@@ -9,7 +7,6 @@ use saltus::{
     Automaton, Clock, Coords, Edges, Entry, Error, ErrorKind, Hybrid, JumpOf, Linearize, Number, Observer, Refusal,
     Reversed, Simulation, saltation,
 };
-use saltus_instances as _;
 
 type Planar = Hybrid<'static, Vector2<f64>>;
 type Line = Hybrid<'static, f64>;

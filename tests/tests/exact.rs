@@ -1,11 +1,8 @@
 //! Balls against closed forms, by the exact arc and by steps.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
 use saltus::nalgebra::{Vector2, vector};
 use saltus::{Hybrid, JumpOf, RunOf, Simulation, Stop};
 use saltus_bounce::{Ball, Cor, Drop, Mode};
-use saltus_instances as _;
 
 fn ball(g: f64, e: f64) -> Ball {
     Ball::new(g, Cor::new(e).unwrap()).unwrap()

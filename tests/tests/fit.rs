@@ -6,8 +6,6 @@
 //! scipy: match them within three standard errors or 0.005, and their standard errors within a
 //! factor of two.
 
-#![allow(clippy::expect_used, clippy::panic)]
-
 use std::path::{Path, PathBuf};
 
 use saltus_fit::{Fit, ReadOptions, Report, Table, Verdict};

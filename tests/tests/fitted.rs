@@ -1,8 +1,6 @@
 //! From readings to a scene: what is fitted, written as a scene and run again, moves as the
 //! readings did.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
 use std::fmt::Write;
 
 use saltus_fit::{CorModel, Fit, ReadOptions, Report, Table};

@@ -1,8 +1,6 @@
 //! Several balls that spin, rub, lie and fly in air: against each ball alone, against closed forms,
 //! against the cloud.
 
-#![allow(clippy::unwrap_used, clippy::panic)] // a test that cannot go on has failed
-
 use nalgebra::{Vector3, vector};
 use saltus::{Simulation, Stop};
 use saltus_bounce::effects::{Gravity, QuadraticDrag};

@@ -1,8 +1,6 @@
 //! Balls among walls: inclines, boxes, stairs, lifts, curved ground, contact and its end, each
 //! against a closed form.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
 use std::f64::consts::TAU;
 
 use proptest::prelude::{Just, Strategy};

@@ -1,8 +1,6 @@
 //! What holds for every ball: the floor holds, time goes forwards, energy is not made, spans may be
 //! split and units changed.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
 use proptest::prelude::*;
 use saltus::nalgebra::{Vector2, vector};
 use saltus::{RunOf, Simulation};

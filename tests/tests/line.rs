@@ -1,7 +1,5 @@
 //! Several balls on a line: stacks that come to rest, what is kept, and mirrors.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
 use proptest::prelude::*;
 use saltus::{RunOf, Simulation, Stop};
 use saltus_bounce::line::{Contact, Lying, Row};

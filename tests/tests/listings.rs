@@ -1,8 +1,6 @@
 //! Every code listing in README and docs compiles in a crate of its own, with only the dependencies
 //! that it names and the features that its page names.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
 use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};

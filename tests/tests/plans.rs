@@ -1,7 +1,5 @@
 //! Scenes as they are planned and run.
 
-#![allow(clippy::unwrap_used, clippy::panic)] // a test that cannot go on has failed
-
 use std::fs;
 use std::path::Path;
 

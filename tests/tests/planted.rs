@@ -3,14 +3,11 @@
 //!
 //! The roots are multiples of 2⁻⁵³, the spacing of numbers just below one, so the sign of the guard
 //! anywhere is that of a product of exact differences, and the right list of crossings follows by
-//! counting. `PLANTED=10000000 cargo test --release -p saltus-tests --test planted` is the long
+//! counting. `PLANTED=10000000 cargo test --release -p saltus-tests planted::` is the long
 //! run.
-
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 
 use saltus::cross::{Start, first_fall};
 use saltus::{Edge, Entry, Hybrid, Simulation};
-use saltus_instances as _;
 
 /// A generator of numbers that look random and are the same in every run (S. Vigna's `splitmix64`).
 struct Random(u64);

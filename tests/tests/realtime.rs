@@ -1,7 +1,5 @@
 //! Frame by frame: the same impacts for every frame rate, without allocation, with bounded work.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
 use allocation_counter::measure;
 use saltus::nalgebra::vector;
 use saltus::step::Stepper;

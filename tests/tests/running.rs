@@ -1,8 +1,6 @@
 //! Ways of running: recorded, observed, pulled, paused and resumed, sampled; and what the loop does
 //! not do.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
 use std::ops::ControlFlow;
 
 use saltus::nalgebra::{Vector2, vector};
@@ -10,7 +8,6 @@ use saltus::{
     About, Automaton, CheckpointOf, Clock, Coords, Edges, Hybrid, Jump, JumpOf, Observer, Piece, Refusal, Simulation,
     State, Stop, TrajectoryOf,
 };
-use saltus_instances as _;
 use serde::{Deserialize, Serialize};
 
 /// A ball with quadratic drag, risen and fallen in two smooth modes, that keeps 0.9 of its speed.

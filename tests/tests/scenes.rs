@@ -1,10 +1,8 @@
 //! Scene files: the examples, the page about them, the schema, and whatever else a reader may be
 //! given.
 //!
-//! `SCENES=1000000 cargo test --release -p saltus-tests --test scenes` is the long run of the
+//! `SCENES=1000000 cargo test --release -p saltus-tests scenes::` is the long run of the
 //! fuzzing.
-
-#![allow(clippy::unwrap_used, clippy::panic)] // a test that cannot go on has failed
 
 use std::fs;
 use std::path::{Path, PathBuf};

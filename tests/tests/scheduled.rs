@@ -1,9 +1,6 @@
 //! Edges that the clock takes.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
 use saltus::{Clock, Hybrid, Polynomial, Simulation};
-use saltus_instances as _;
 
 #[test]
 fn a_schedule_starts_after_the_start_and_ends_with_the_span() {

@@ -1,10 +1,6 @@
 //! Derivatives through jumps, against closed forms and differences of runs.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
-#[path = "sensitivity/models.rs"]
 mod models;
-#[path = "sensitivity/sliding.rs"]
 mod sliding;
 
 use models::{Bounce, Coin, Dosed, Dragged, Hopper, Phase, Tossed};

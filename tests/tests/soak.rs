@@ -2,7 +2,7 @@
 //! named end, and keeps the laws it has to keep.
 //!
 //! A few thousand run with the tests; a soak is
-//! `SOAK=1000000 cargo test --release -p saltus-tests --test soak -- --nocapture`, which ends in a
+//! `SOAK=1000000 cargo test --release -p saltus-tests soak:: -- --nocapture`, which ends in a
 //! summary and takes some five minutes on two cores. `SOAK_FROM` is the number of the first scene:
 //! any that fails is run again by `SOAK=1 SOAK_FROM=<its number>`.
 

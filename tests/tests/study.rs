@@ -1,7 +1,5 @@
 //! The study's equations against its own numbers, and against the hybrid automaton of the ball.
 
-#![allow(clippy::expect_used, clippy::unwrap_used)] // a failed test is a panic
-
 use proptest::prelude::*;
 
 use saltus::{Simulation, TrajectoryOf};

@@ -2,8 +2,6 @@
 //! themselves in `docs/trust/numerics.md`, the counts and steps beside them in
 //! `docs/trust/thresholds.md`.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -16,7 +14,7 @@ const HEAD: &str = "# Counts and steps
 The named numbers beside the twelve [thresholds](numerics.md#certainty-and-nearness) by which the
 engine decides how often something is looked at, what a step may be, and when jumps accumulate. For
 whoever changes the engine. The page is written from the sources by `SALTUS_BLESS=1 cargo test -p
-saltus-tests --test thresholds`, and the same test holds it to them.
+saltus-tests thresholds::`, and the same test holds it to them.
 ";
 
 /// Where the twelve stand on their page.

@@ -1,8 +1,6 @@
 //! `saltus accuracy` and `saltus simulate --target` as their user meets them.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
-mod tool;
+use crate::tool;
 
 use std::process::Output;
 

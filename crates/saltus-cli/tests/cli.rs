@@ -1,14 +1,10 @@
 //! The command as its user meets it: what it prints, writes and answers, and how it ends.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
-mod tool;
-
 use std::fs;
 
+use crate::tool::{done, fed, golden, refused, root, run, saltus, squash, table, text};
 use serde_json::Value;
 use tempfile::TempDir;
-use tool::{done, fed, golden, refused, root, run, saltus, squash, table, text};
 
 #[test]
 fn the_main_job() {

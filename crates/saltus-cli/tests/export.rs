@@ -1,14 +1,10 @@
 //! `export` and `check`: a scene's motion as files for animation programs.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
-mod tool;
-
 use std::fs;
 use std::path::Path;
 
+use crate::tool::{done, refused, root, run, text};
 use tempfile::TempDir;
-use tool::{done, refused, root, run, text};
 
 #[test]
 fn a_scene_is_exported_for_animators_and_says_how_exactly() {

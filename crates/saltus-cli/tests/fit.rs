@@ -1,16 +1,14 @@
 //! `saltus fit` as a newcomer meets it: the first example of its guide, several films, options
 //! without a unit.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
-mod tool;
+use crate::tool;
 
 use std::fs;
 use std::path::Path;
 use std::process::Output;
 
+use crate::tool::text;
 use tempfile::TempDir;
-use tool::text;
 
 fn saltus(folder: &Path, arguments: &[&str]) -> Output {
     tool::saltus().current_dir(folder).args(arguments).output().unwrap()

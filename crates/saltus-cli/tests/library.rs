@@ -1,18 +1,16 @@
 //! `saltus library` and the way to it from a table: folders whole or not at all, and every file as
 //! its index says.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
-mod tool;
+use crate::tool;
 
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
+use crate::tool::{done, refused, root};
 use saltus_scene::Scene;
 use serde_json::Value;
 use tempfile::TempDir;
-use tool::{done, refused, root};
 
 fn saltus(arguments: &[&str]) -> (Option<i32>, String, String) {
     let output = tool::saltus().args(arguments).output().unwrap();

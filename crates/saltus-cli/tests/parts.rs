@@ -1,39 +1,37 @@
 //! `saltus sweep --into`: a folder of parts, whatever happens to those who write it.
 
-#![allow(clippy::unwrap_used, clippy::panic)] // a test that cannot go on has failed
-
-mod tool;
+use crate::tool;
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::process::{Child, Command, Output, Stdio};
 
+use crate::tool::place::{DROP, Place};
 use proptest::prelude::*;
 use saltus_cases::cases;
-use tool::place::{DROP, Place};
 
 const GRID: [&str; 4] = ["--vary", "restitution=0.5:0.9:12", "--vary", "ball.height=1m:9m:10"];
 
 impl Place {
-    fn command(&self, folder: &str, more: &[&str]) -> Command {
+    fn command_into(&self, folder: &str, more: &[&str]) -> Command {
         let mut command = self.sweep();
         command.args(["--into", folder]).args(GRID).args(more);
         command
     }
 
-    fn run(&self, folder: &str, more: &[&str]) -> Output {
-        self.command(folder, more).output().unwrap()
+    fn run_into(&self, folder: &str, more: &[&str]) -> Output {
+        self.command_into(folder, more).output().unwrap()
     }
 
-    fn done(&self, folder: &str, more: &[&str]) -> String {
-        let output = self.run(folder, more);
+    fn done_into(&self, folder: &str, more: &[&str]) -> String {
+        let output = self.run_into(folder, more);
         let said = String::from_utf8(output.stderr).unwrap();
         assert!(output.status.success() && output.stdout.is_empty(), "{said}");
         said
     }
 
-    fn refused(&self, folder: &str, more: &[&str]) -> String {
-        let output = self.run(folder, more);
+    fn refused_into(&self, folder: &str, more: &[&str]) -> String {
+        let output = self.run_into(folder, more);
         assert_eq!(output.status.code(), Some(2), "{folder} {more:?}");
         String::from_utf8(output.stderr).unwrap()
     }
@@ -54,31 +52,31 @@ impl Place {
 #[test]
 fn shares_make_the_whole() {
     let place = Place::of(DROP);
-    assert_eq!(place.done("whole", &["--chunk", "7"]), "");
+    assert_eq!(place.done_into("whole", &["--chunk", "7"]), "");
     let whole = place.files("whole");
     assert_eq!(whole.len(), 1 + 18);
     assert!(whole.contains_key("_sweep.json") && whole.contains_key("part-000.parquet"));
     for (n, share) in ["3/4", "1/4", "4/4", "2/4"].into_iter().enumerate() {
-        let said = place.done("shares", &["--chunk", "7", "--part", share, "--threads", "1"]);
+        let said = place.done_into("shares", &["--chunk", "7", "--part", share, "--threads", "1"]);
         assert_eq!(said.contains("other shares make them"), n < 3, "{said}");
     }
     assert!(place.files("shares") == whole);
     // Who comes again changes nothing.
     let when = |name: &str| fs::metadata(place.path("whole").join(name)).unwrap().modified().unwrap();
     let before: Vec<_> = whole.keys().map(|name| when(name)).collect();
-    place.done("whole", &[]);
+    place.done_into("whole", &[]);
     assert_eq!(whole.keys().map(|name| when(name)).collect::<Vec<_>>(), before);
 }
 
 #[test]
 fn several_write_to_one_folder() {
     let place = Place::of(DROP);
-    place.done("whole", &["--chunk", "1"]);
+    place.done_into("whole", &["--chunk", "1"]);
     let whole = place.files("whole");
     for n in 0..3 {
         let folder = format!("shared{n}");
         let silent = |_: usize| {
-            let mut command = place.command(&folder, &["--chunk", "1"]);
+            let mut command = place.command_into(&folder, &["--chunk", "1"]);
             command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap()
         };
         for writer in (0..4).map(silent).collect::<Vec<Child>>() {
@@ -96,7 +94,7 @@ fn of_several_that_begin_a_folder_one_says_how_long_parts_are() {
     let begin = |n: usize| {
         let chunk = (n + 3).to_string();
         let more: &[&str] = if n == 3 { &[] } else { &["--chunk", &chunk] };
-        place.command("rows", more).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap()
+        place.command_into("rows", more).stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap()
     };
     let writers: Vec<Child> = (0..4).map(begin).collect();
     let outputs: Vec<Output> = writers.into_iter().map(|writer| writer.wait_with_output().unwrap()).collect();
@@ -118,12 +116,12 @@ fn killed_and_gone_on_with() {
     use std::time::{Duration, Instant};
 
     let place = Place::of(tool::place::DRAG);
-    place.done("whole", &["--chunk", "2"]);
+    place.done_into("whole", &["--chunk", "2"]);
     let (whole, clock) = (place.files("whole"), Instant::now());
     let inode = |name: &str| fs::metadata(place.path("rows").join(name)).unwrap().ino();
     let (mut kills, mut made) = (0, BTreeMap::<String, u64>::new());
     loop {
-        let mut child = place.command("rows", &["--chunk", "2"]).stderr(Stdio::null()).spawn().unwrap();
+        let mut child = place.command_into("rows", &["--chunk", "2"]).stderr(Stdio::null()).spawn().unwrap();
         let wanted = made.len() + 8;
         while child.try_wait().unwrap().is_none() && place.parts("rows") < wanted {
             assert!(clock.elapsed() < Duration::from_secs(300));
@@ -147,26 +145,26 @@ fn killed_and_gone_on_with() {
 #[test]
 fn another_sweep_is_refused() {
     let place = Place::of(DROP);
-    place.done("rows", &["--chunk", "20"]);
+    place.done_into("rows", &["--chunk", "20"]);
     let whole = place.files("rows");
-    let said = place.refused("rows", &["--until", "2s"]);
+    let said = place.refused_into("rows", &["--until", "2s"]);
     assert!(
         said.contains("'rows' holds another sweep: its `until_s` is null, here it is 2.0; name another folder"),
         "{said}"
     );
-    let said = place.refused("rows", &["--chunk", "30"]);
+    let said = place.refused_into("rows", &["--chunk", "30"]);
     assert!(said.contains("have 20 rows, and not 30"), "{said}");
     fs::write(place.path("scene.toml"), DROP.replace("0.5", "0.6")).unwrap();
-    let said = place.refused("rows", &[]);
+    let said = place.refused_into("rows", &[]);
     assert!(said.contains("the scene is not the same"), "{said}");
     assert!(place.files("rows") == whole);
     // A part of it in another folder.
-    place.done("others", &["--chunk", "20"]);
+    place.done_into("others", &["--chunk", "20"]);
     fs::copy(place.path("rows/part-020.parquet"), place.path("others/part-020.parquet")).unwrap();
-    let said = place.refused("others", &[]);
+    let said = place.refused_into("others", &[]);
     assert!(said.contains("belongs to another sweep"), "{said}");
     fs::remove_file(place.path("rows/_sweep.json")).unwrap();
-    let said = place.refused("rows", &[]);
+    let said = place.refused_into("rows", &[]);
     assert!(said.contains("has parts and no _sweep.json"), "{said}");
 }
 
@@ -182,18 +180,18 @@ fn what_makes_no_sense_is_refused() {
         (&["--resume"], "--resume"),
         (&["--plot", "rows.svg"], "cannot be used with"),
     ] {
-        let said = place.refused("rows", more);
+        let said = place.refused_into("rows", more);
         assert!(said.contains(says), "{more:?}: {said}");
     }
     assert!(!place.path("rows").exists());
-    let said = place.refused("scene.toml", &[]);
+    let said = place.refused_into("scene.toml", &[]);
     assert!(said.contains("scene.toml"), "{said}");
 }
 
 #[test]
 fn runs_that_come_to_nothing_are_rows_and_named() {
     let place = Place::of(DROP);
-    let said = place.done("rows", &["--vary", "drag.per_length=0,-1", "--chunk", "50"]);
+    let said = place.done_into("rows", &["--vary", "drag.per_length=0,-1", "--chunk", "50"]);
     assert!(said.contains("120 runs came to nothing; the first is run 1, "), "{said}");
     assert_eq!(place.parts("rows"), 5);
 }
@@ -211,7 +209,7 @@ proptest! {
     ) {
         let place = Place::of(DROP);
         let chunk = chunk.to_string();
-        place.done("rows", &["--chunk", &chunk]);
+        place.done_into("rows", &["--chunk", &chunk]);
         let whole = place.files("rows");
         let names: Vec<&String> = whole.keys().filter(|name| name.starts_with("part-")).collect();
         let torn = torn.get(&names);
@@ -226,7 +224,7 @@ proptest! {
             let _ = fs::remove_file(place.path("rows").join(index.get(&names)));
         }
         fs::write(place.path("rows/.part-000.parquet.0123.part"), "left by one who was killed").unwrap();
-        place.done("rows", &[]);
+        place.done_into("rows", &[]);
         prop_assert!(place.files("rows") == whole);
     }
 }

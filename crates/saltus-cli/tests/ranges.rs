@@ -1,13 +1,9 @@
 //! Every number that stands behind an option, from zero to beyond what can be right: a result, or
 //! an error that says the range.
 
-#![allow(clippy::unwrap_used, clippy::panic)] // a test that cannot go on has failed
-
-mod tool;
-
 use std::process::Command;
 
-use tool::{root, saltus, text};
+use crate::tool::{root, saltus, text};
 
 const VALUES: [&str; 12] =
     ["0", "-1", "0.5", "1e-300", "1e-30", "1e-9", "1e6", "299792458", "1e12", "1e300", "nan", "inf"];

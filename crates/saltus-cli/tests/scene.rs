@@ -1,14 +1,10 @@
 //! `simulate`, `explain` and `schema`: scenes run, drawn, explained and refused.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
-mod tool;
-
 use std::fs;
 
+use crate::tool::{done, fed, golden, refused, root, run, run_quietly, scene, text};
 use serde_json::Value;
 use tempfile::TempDir;
-use tool::{done, fed, golden, refused, root, run, run_quietly, scene, text};
 
 #[test]
 fn simulating_for_programs() {

@@ -1,9 +1,7 @@
 //! `saltus solve` as its user meets it: every answer is run again, and compared with a formula that
 //! the command does not use.
 
-#![allow(clippy::unwrap_used, clippy::panic)] // a test that cannot go on has failed
-
-mod tool;
+use crate::tool;
 
 use std::fs;
 

@@ -1,14 +1,12 @@
 //! `saltus sweep` as its user meets it.
 
-#![allow(clippy::unwrap_used, clippy::panic)] // a test that cannot go on has failed
-
-mod tool;
+use crate::tool;
 
 use std::fs;
 use std::process::{Command, Output};
 
+use crate::tool::place::{DRAG, DROP, Place};
 use serde_json::Value;
-use tool::place::{DRAG, DROP, Place};
 
 impl Place {
     fn read(&self, name: &str) -> String {

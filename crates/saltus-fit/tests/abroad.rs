@@ -1,15 +1,11 @@
 //! Tables of other countries and makers: their encodings, scripts that part no words, drawn tables
 //! below titles, codes of specimens, speeds of gates.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
-mod typed;
-
+use crate::typed::{fit, trusted};
 use encoding_rs::{BIG5, EUC_KR, Encoding, GB18030, SHIFT_JIS, WINDOWS_1250, WINDOWS_1251, WINDOWS_1253};
 use proptest::prelude::*;
 use saltus_cases::cases;
 use saltus_fit::{Fit, ReadOptions, Report, Table, Verdict};
-use typed::{fit, trusted};
 
 fn near(found: f64, e: f64, by: f64) -> bool {
     (found - e).abs() < by

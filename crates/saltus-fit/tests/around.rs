@@ -1,14 +1,10 @@
 //! What stands around the numbers of a table: lines that name them all, paragraphs of a page,
 //! the codes of what was dropped, remarks below. Each says what the plain table says, or nothing.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
-mod typed;
-
+use crate::typed::{fit, read, trusted};
 use proptest::prelude::*;
 use saltus_cases::cases;
 use saltus_fit::{Fit, ReadOptions, Report, Table, Verdict};
-use typed::{fit, read, trusted};
 
 /// A drop and its rebounds, or the times of contacts, of a ball of this COR.
 fn heights(e: f64) -> Vec<f64> {

@@ -1,18 +1,12 @@
 //! Batches of balls, classes and clubs: what their tables call rows and columns, and what they say
 //! beside them.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
-mod film;
-mod noise;
-mod typed;
-
-use film::{Ball, Contact, csv, noisy, report};
-use noise::Noise;
+use crate::film::{Ball, Contact, csv, noisy, report};
+use crate::noise::Noise;
+use crate::typed::{fit, read, trusted};
 use proptest::prelude::*;
 use saltus_cases::cases;
 use saltus_fit::{FindingKind, Report, Verdict};
-use typed::{fit, read, trusted};
 
 fn lines(rows: impl IntoIterator<Item = String>) -> String {
     rows.into_iter().map(|row| row + "\n").collect()

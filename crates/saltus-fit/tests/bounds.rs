@@ -1,10 +1,6 @@
 //! Numbers that bound how tables are read, met from both sides.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
-mod typed;
-
-use typed::{fit, read, trusted};
+use crate::typed::{fit, read, trusted};
 
 fn near(found: f64, e: f64) -> bool {
     (found - e).abs() < 4e-3

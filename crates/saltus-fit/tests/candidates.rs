@@ -1,8 +1,6 @@
 //! Of several columns that are called heights the one that was measured is read, or it is asked
 //! which one that is: never is another one trusted.
 
-#![allow(clippy::panic, clippy::unwrap_used)] // a test that cannot go on has failed
-
 use proptest::prelude::*;
 use saltus_cases::cases;
 use saltus_fit::{Fit, ReadOptions, Report, Table, Verdict};

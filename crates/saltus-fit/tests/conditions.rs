@@ -2,14 +2,10 @@
 //! words of any language. Where the COR differs by it, each has a COR of its own, or all together
 //! are doubted; they are never one COR that is trusted.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
-mod typed;
-
+use crate::typed::{fit, trusted};
 use proptest::prelude::*;
 use saltus_cases::cases;
 use saltus_fit::{ReadOptions, Table, Verdict};
-use typed::{fit, trusted};
 
 /// CORs that rise with the condition, by this from one to the next.
 fn cors(first: f64, step: f64, count: usize) -> Vec<f64> {

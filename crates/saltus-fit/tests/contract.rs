@@ -1,7 +1,5 @@
 //! The JSON that programs rely on.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
 use saltus_fit::{Fit, ReadOptions, Table};
 use serde_json::Value;
 

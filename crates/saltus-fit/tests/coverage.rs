@@ -1,10 +1,6 @@
 //! A 95 % interval holds the truth 95 times in a hundred.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
-mod noise;
-
-use noise::Noise;
+use crate::noise::Noise;
 use saltus_cases::cases;
 use saltus_fit::{Fit, ReadOptions, Table};
 

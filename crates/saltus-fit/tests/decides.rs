@@ -1,8 +1,6 @@
 //! Numbers by which the fit decides, each met from both sides, so that ten times more or less of
 //! any fails.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
 use std::fmt::Write as _;
 
 use saltus_fit::{FindingKind, Fit, ReadOptions, Report, Table, Verdict, Widening};

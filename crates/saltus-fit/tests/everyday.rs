@@ -1,14 +1,10 @@
 //! What pupils, programs and devices write beside their readings: signs, legends, counters, places
 //! that were not found.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
-mod typed;
-
+use crate::typed::{fit, read, trusted};
 use proptest::prelude::*;
 use saltus_cases::cases;
 use saltus_fit::{FindingKind, Fit, Verdict};
-use typed::{fit, read, trusted};
 
 fn lines(rows: impl IntoIterator<Item = String>) -> String {
     rows.into_iter().map(|row| row + "\n").collect()

@@ -1,14 +1,10 @@
 //! Files as programs write them are read as they are, and say what they were taken for.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
-mod written;
-
 use std::path::PathBuf;
 
+use crate::written::{cells, workbook, xlsx, zip};
 use allocation_counter::measure;
 use saltus_fit::{Event, ReadOptions, Table, TableError};
-use written::{cells, workbook, xlsx, zip};
 
 fn read(bytes: &[u8], options: &ReadOptions) -> Table {
     Table::parse("file", bytes, options).unwrap_or_else(|error| panic!("{error}"))

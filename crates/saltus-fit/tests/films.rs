@@ -1,13 +1,8 @@
 //! Films of balls whose impacts take time, as all do: what the program says of the COR, and how
 //! often its intervals hold the truth.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
-mod film;
-mod noise;
-
-use film::{Ball, Contact, csv, noisy, report};
-use noise::Noise;
+use crate::film::{Ball, Contact, csv, noisy, report};
+use crate::noise::Noise;
 use saltus_cases::cases;
 use saltus_fit::{FindingKind, Fit, ReadOptions, Report, Table, Verdict};
 

@@ -1,17 +1,12 @@
 //! Findings are data: every kind has words and a line in the documentation, and a report that was
 //! written is read back as it was.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
-mod film;
-mod noise;
-
 use std::fmt::{Debug, Display};
 use std::fs;
 use std::path::Path;
 
-use film::{Ball, Contact, csv, noisy, report};
-use noise::Noise;
+use crate::film::{Ball, Contact, csv, noisy, report};
+use crate::noise::Noise;
 use proptest::prelude::*;
 use saltus_fit::{
     Fit, Lines, Loss, Named, Note, Pace, Program, ReadOptions, Remark, Repair, Report, Severity, Shape, Table, Verdict,

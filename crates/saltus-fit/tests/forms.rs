@@ -2,14 +2,10 @@
 //! tables of a wiki, beside columns of rates and of row numbers. Each says what the plain table of
 //! the same numbers says.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
-mod typed;
-
+use crate::typed::{fit, read, trusted};
 use proptest::prelude::*;
 use saltus_cases::cases;
 use saltus_fit::{Fit, Verdict};
-use typed::{fit, read, trusted};
 
 /// The COR of a table, which is trusted, and how many readings it has.
 fn counted(text: &str) -> (f64, usize) {

@@ -1,8 +1,6 @@
 //! Tables as people hand them in, each with its right answer, with what has to be left aside, or
 //! with the question that it raises.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
 use std::path::{Path, PathBuf};
 
 use saltus_fit::{FindingKind, Fit, Part, ReadOptions, Report, Table, TableError, Verdict, Why};

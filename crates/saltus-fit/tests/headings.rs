@@ -1,14 +1,10 @@
 //! What heads a column, however it is put: the readings that a mean is of, a condition or a height
 //! of release, a sign with its legend, the title of a part of a page, a trial that is only counted.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
-mod typed;
-
+use crate::typed::{fit, read, trusted};
 use proptest::prelude::*;
 use saltus_cases::cases;
 use saltus_fit::{Group, Report, Verdict};
-use typed::{fit, read, trusted};
 
 /// Rebounds of drops from `from`, which scatter by half a hundredth.
 fn rebounds(e: f64, from: f64) -> [f64; 4] {

@@ -1,20 +1,15 @@
 //! Whatever the bytes, reading ends, soon, with a table or with an error that says something.
 //!
-//! `HOSTILE=100000 cargo test --release -p saltus-fit --test hostile` is the long run: so many
+//! `HOSTILE=100000 cargo test --release -p saltus-fit hostile::` is the long run: so many
 //! changed files of every kind.
-
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
-mod random;
-mod written;
 
 use std::path::Path;
 
+use crate::random::Random;
+use crate::written::{cells, workbook, xlsx, zip};
 use proptest::prelude::*;
-use random::Random;
 use saltus_cases::cases;
 use saltus_fit::{ReadOptions, Table};
-use written::{cells, workbook, xlsx, zip};
 
 const TEXTS: [&str; 8] = [
     include_str!("tables/events.csv"),

@@ -1,8 +1,6 @@
 //! docs/change/fitting-inside.md lists every finding, and the constants that decide with the values
 //! that they have.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
 use std::fs;
 use std::path::{Path, PathBuf};
 

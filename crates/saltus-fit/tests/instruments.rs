@@ -1,17 +1,13 @@
 //! What sensors, loggers, trackers and sound programs write, and how their lists are titled.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
+use crate::film;
 
-mod film;
-mod noise;
-mod typed;
-
-use film::{Ball, Contact, noisy};
-use noise::Noise;
+use crate::film::{Ball, Contact, noisy};
+use crate::noise::Noise;
+use crate::typed::{fit, read, trusted};
 use proptest::prelude::*;
 use saltus_cases::cases;
 use saltus_fit::{Fit, Method, ReadOptions, Report, Source, Table, Verdict};
-use typed::{fit, read, trusted};
 
 /// Times of contacts of a ball that first hits at `at` and then flies for `flight`, s.
 fn contacts(e: f64, (at, flight): (f64, f64), count: usize) -> Vec<f64> {

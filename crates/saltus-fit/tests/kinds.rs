@@ -2,8 +2,6 @@
 //! other programs hold, and letters that tell of bounces. Of each kind one that is read and those
 //! that look alike and are not.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
 use std::fmt::Write as _;
 
 use saltus_fit::{Fit, ReadOptions, Report, Table, Verdict};

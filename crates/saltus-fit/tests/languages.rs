@@ -1,8 +1,6 @@
 //! A table says the same in every language in which its headings are understood, with whatever
 //! commas its numbers are written.
 
-#![allow(clippy::panic, clippy::unwrap_used)] // a test that cannot go on has failed
-
 use proptest::prelude::*;
 use saltus_cases::cases;
 use saltus_fit::{Fit, ReadOptions, Table, Why};

@@ -1,14 +1,10 @@
 //! The same readings, whatever the layout, the unit, the delimiter, the decimal mark, the encoding
 //! and the order of rows.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
-mod written;
-
+use crate::written::{xlsx, zip};
 use proptest::prelude::*;
 use saltus_cases::cases;
 use saltus_fit::{Event, ReadOptions, Table};
-use written::{xlsx, zip};
 
 /// Event, number, time, height of every reading, trial by trial.
 type Observed = Vec<Vec<(Event, usize, Option<f64>, Option<f64>)>>;

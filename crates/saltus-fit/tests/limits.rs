@@ -1,11 +1,7 @@
 //! Limits that decide what is found, each met from both sides: with ten times more or less of any
 //! of them a test here fails.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
-mod noise;
-
-use noise::Noise;
+use crate::noise::Noise;
 use saltus_fit::{FindingKind, Fit, ReadOptions, Report, Table};
 
 fn read(text: &str) -> Table {

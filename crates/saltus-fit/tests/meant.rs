@@ -2,14 +2,12 @@
 //! a column of their own, titles above lists, letters around a table. Each says what the plain
 //! table of the same numbers says, or doubts.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
+use crate::typed;
 
-mod typed;
-
+use crate::typed::{fit, trusted};
 use proptest::prelude::*;
 use saltus_cases::cases;
 use saltus_fit::{ReadOptions, Table, Verdict, Why};
-use typed::{fit, trusted};
 
 /// Heights of a drop and its bounces, cm.
 fn heights(e: f64, count: i32) -> Vec<f64> {

@@ -1,10 +1,6 @@
 //! What is planted beside one COR is found, named, and told apart as far as the readings go.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
-mod noise;
-
-use noise::Noise;
+use crate::noise::Noise;
 use saltus_bounce::restitution::{Cor, Plastic, Viscoelastic};
 use saltus_fit::{CorModel, Fit, Loss, ModelChoice, ReadOptions, Report, Table, UnderLoss, Verdict};
 

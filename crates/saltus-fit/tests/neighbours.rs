@@ -1,16 +1,11 @@
 //! What columns, lines and sheets say of one another: a flight beside a height of release, a remark
 //! that answers yes or no, a unit at the end of a line, a sheet of notes beside those of readings.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
-mod typed;
-mod written;
-
+use crate::typed::{fit, read, trusted};
+use crate::written::xlsx;
 use proptest::prelude::*;
 use saltus_cases::cases;
 use saltus_fit::{Fit, ReadOptions, Report, Table, Verdict};
-use typed::{fit, read, trusted};
-use written::xlsx;
 
 fn near(found: f64, e: f64, by: f64) -> bool {
     (found - e).abs() < by

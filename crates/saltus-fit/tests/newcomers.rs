@@ -1,7 +1,5 @@
 //! Sheets as people bring them, each with a ball of 0.8: read as they are.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
 use saltus_fit::{Fit, ReadOptions, Report, Table, Verdict};
 
 fn read(text: &str) -> Table {

@@ -1,7 +1,5 @@
 //! Old workbooks that would have their reader fill the memory are refused before they come to it.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
 use saltus_fit::{ReadOptions, Table};
 
 const END: u32 = 0xFFFF_FFFE;

@@ -1,10 +1,6 @@
 //! With three readings in ten wild, the COR is still found, and its interval still holds it.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
-mod noise;
-
-use noise::Noise;
+use crate::noise::Noise;
 use saltus_cases::cases;
 use saltus_fit::{Fit, ReadOptions, Report, Table, Verdict};
 

@@ -2,14 +2,10 @@
 //! and ends of contacts, from where and up to where, heights beside the time until all is quiet,
 //! and lists below a sentence that tells from where a ball was dropped.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
-mod typed;
-
+use crate::typed::{fit, read, trusted};
 use proptest::prelude::*;
 use saltus_cases::cases;
 use saltus_fit::{Fit, Note, ReadOptions, Report, Table};
-use typed::{fit, read, trusted};
 
 fn near(found: f64, e: f64, by: f64) -> bool {
     (found - e).abs() < by

@@ -1,13 +1,8 @@
 //! What no ball does is doubted, and what some balls do is not: each limit of the model is met from
 //! both sides.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
-mod film;
-mod noise;
-
-use film::{Ball, Contact, csv, noisy, report};
-use noise::Noise;
+use crate::film::{Ball, Contact, csv, noisy, report};
+use crate::noise::Noise;
 use saltus_fit::{FindingKind, Fit, ReadOptions, Report, Severity, Table};
 
 fn ball(cor: fn(f64) -> f64, drag: f64) -> Ball {

@@ -1,11 +1,7 @@
 //! A plan holds what it promises: the planned experiment is made, many times, with the errors of
 //! its way, and fitted.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
-mod noise;
-
-use noise::Noise;
+use crate::noise::Noise;
 use saltus_fit::{Ball, Expected, Fit, Planned, ReadOptions, Readings, Table, Verdict, Way};
 
 const G: f64 = 9.81;

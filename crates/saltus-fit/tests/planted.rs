@@ -1,11 +1,7 @@
 //! Planted faults are found and named: outliers, missed and doubled contacts, misread times; and
 //! what tolerances allow.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
-mod noise;
-
-use noise::Noise;
+use crate::noise::Noise;
 use saltus_fit::{Fit, Loss, ReadOptions, Report, Table, Verdict};
 
 fn parse(text: &str) -> Table {

@@ -1,7 +1,5 @@
 //! Every layout that is understood, and every refusal with its place.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
 use proptest::prelude::*;
 use saltus_cases::cases;
 use saltus_fit::{Event, Fit, ReadOptions, Table, TableError, Why};

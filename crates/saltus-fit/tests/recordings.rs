@@ -1,11 +1,7 @@
 //! Recordings as people make them, each with a truth that the plainest model misses: what is told,
 //! doubted, or found out.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
-mod noise;
-
-use noise::Noise;
+use crate::noise::Noise;
 use saltus_fit::{Fit, ReadOptions, Report, Severity, Table, Verdict};
 
 const G: f64 = 9.81;

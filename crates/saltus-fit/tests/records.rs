@@ -2,14 +2,10 @@
 //! time from the release: each says what the plain table of the same numbers says. Columns that are
 //! no readings of the same thing are not told apart by the name of a ball.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
-mod typed;
-
+use crate::typed::{fit, read, trusted};
 use proptest::prelude::*;
 use saltus_cases::cases;
 use saltus_fit::{Fit, ReadOptions, Report, Table, Verdict};
-use typed::{fit, read, trusted};
 
 fn doubted(report: &Report, words: &str) -> bool {
     report.verdict() == Verdict::Doubtful && report.reason().contains(words)

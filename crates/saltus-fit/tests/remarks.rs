@@ -1,14 +1,11 @@
 //! Remarks that change what the numbers beside them mean are doubts; those that change nothing are
 //! none; what bears a name that says so is no reading.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
+use crate::written;
 
-mod typed;
-mod written;
-
+use crate::typed::{fit, read, trusted};
 use proptest::prelude::*;
 use saltus_fit::{Change, Doubt, FindingKind, Fit, ReadOptions, Report, Table, Verdict, Why};
-use typed::{fit, read, trusted};
 
 /// A language, a tab, a remark as it stands in a sound table.
 const HARMLESS: &str = include_str!("tables/remarks-harmless.tsv");

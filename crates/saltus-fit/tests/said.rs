@@ -1,12 +1,9 @@
 //! What people are told: what they state is obeyed, what looks wrong is named with its place, and
 //! what cannot be told apart is not told apart.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
+use crate::written;
 
-mod noise;
-mod written;
-
-use noise::Noise;
+use crate::noise::Noise;
 use saltus_fit::{CorModel, Fit, Loss, ReadOptions, Report, Table, Verdict};
 
 fn read(text: &str, options: &ReadOptions) -> Table {

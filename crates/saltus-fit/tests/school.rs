@@ -1,7 +1,5 @@
 //! Ways in which classes write down what they measured: each is a law that holds for every ball.
 
-#![allow(clippy::panic, clippy::unwrap_used)] // a test that cannot go on has failed
-
 use proptest::prelude::*;
 use saltus_cases::cases;
 use saltus_fit::{Fit, ReadOptions, Report, Table, TableError, Verdict};

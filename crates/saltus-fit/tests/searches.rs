@@ -1,15 +1,10 @@
 //! Numbers that limit what is searched and what is left out, each met from both sides, so that ten
 //! times more or less of any fails.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
-mod film;
-mod noise;
-
 use std::fmt::Write as _;
 
-use film::{Ball, Contact, csv, noisy, report};
-use noise::Noise;
+use crate::film::{Ball, Contact, csv, noisy, report};
+use crate::noise::Noise;
 use saltus_fit::{CorModel, FindingKind, Fit, ReadOptions, Report, Table, Widening};
 
 const G: f64 = 9.81;

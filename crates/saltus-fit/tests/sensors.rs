@@ -2,16 +2,11 @@
 //! end and force are known are found in what such a sensor would show, and nothing else is taken
 //! for them.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
-mod noise;
-mod typed;
-
 use std::f64::consts::PI;
 
-use noise::Noise;
+use crate::noise::Noise;
+use crate::typed::{fit, read, trusted};
 use saltus_fit::{Note, Part, Report, Source, Verdict, Why};
-use typed::{fit, read, trusted};
 
 /// What a ball shows a sensor: the rate and the number of its samples, the COR and how far it
 /// scatters, how long the first contact lasts and its peak, the noise.

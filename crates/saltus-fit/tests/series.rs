@@ -1,15 +1,10 @@
 //! Series of heights in time: planted motions are found, and recordings made by other people give
 //! what an analyst found in them.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
-mod film;
-mod noise;
-
 use std::path::{Path, PathBuf};
 
-use film::{Ball, Contact, csv, noisy, report};
-use noise::Noise;
+use crate::film::{Ball, Contact, csv, noisy, report};
+use crate::noise::Noise;
 use saltus_fit::{CorModel, Fit, ReadOptions, Report, Table, Track, Verdict};
 
 fn steel() -> Ball {

@@ -1,7 +1,5 @@
 //! Ratios of heights are readings where they are all there is.
 
-#![allow(clippy::panic, clippy::unwrap_used)] // a test that cannot go on has failed
-
 use proptest::prelude::*;
 use saltus_cases::cases;
 use saltus_fit::{Fit, ReadOptions, Table, TableError};

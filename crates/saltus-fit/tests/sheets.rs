@@ -1,16 +1,11 @@
 //! Sheets made at random, as people dress them: what is read is what was planted, or a question;
 //! never something else.
 //!
-//! `SHEETS=100000 cargo test -p saltus-fit --test sheets` is the long run.
+//! `SHEETS=100000 cargo test -p saltus-fit sheets::` is the long run.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
-mod random;
-mod written;
-
-use random::Random;
+use crate::random::Random;
+use crate::written::xlsx;
 use saltus_fit::{Event, ReadOptions, Table, TableError};
-use written::xlsx;
 
 impl Random {
     fn one<T: Copy>(&mut self, of: &[T]) -> T {

@@ -1,9 +1,8 @@
 //! Sounds: the contacts of a ball are found among all else that is heard, and nothing else is
 //! taken for them without a doubt.
 
-#![allow(clippy::unwrap_used, clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+#![allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss)]
 
-#[path = "sound/made.rs"]
 mod made;
 
 use std::fmt::Write as _;
@@ -94,7 +93,7 @@ fn a_ball_with_echoes_that_others_recorded() {
 }
 
 /// Of each kind so many, by default a few: `SOUNDS=200 SALTUS_BLESS=1 cargo test -p saltus-fit
-/// --test sound made_sounds` writes the table of docs/use/sound.md.
+/// sound::made_sounds` writes the table of docs/use/sound.md.
 #[test]
 fn made_sounds_are_heard_or_refused() {
     let count: u64 = std::env::var("SOUNDS").ok().map_or(u64::from(cases(25)), |count| count.parse().unwrap());

@@ -1,11 +1,7 @@
 //! The same COR whatever the unit, the size and the weights of a table: to 1e-9 that of the
 //! well-scaled one.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
-mod noise;
-
-use noise::Noise;
+use crate::noise::Noise;
 use saltus_fit::{Fit, ReadOptions, Report, Table};
 
 fn cor(report: &Report) -> f64 {

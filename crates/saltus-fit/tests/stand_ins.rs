@@ -1,14 +1,10 @@
 //! Columns that stand for heights or times: energies, speeds of one side, samples of a sound, the
 //! moments of tops. Balls of any COR are planted, and what is made of them is read.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
-mod typed;
-
+use crate::typed::{fit, read, trusted};
 use proptest::prelude::*;
 use saltus_cases::cases;
 use saltus_fit::{Fit, ReadOptions, Table, Verdict};
-use typed::{fit, read, trusted};
 
 /// Rows below a header.
 fn table(header: &str, rows: impl IntoIterator<Item = String>) -> String {

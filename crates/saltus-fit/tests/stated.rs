@@ -1,14 +1,12 @@
 //! What stands beside the numbers of a table says what they are: units in a line or a member of
 //! their own, words of a letter, of a simulation, of a loss.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
+use crate::typed;
 
-mod typed;
-
+use crate::typed::{fit, trusted};
 use proptest::prelude::*;
 use saltus_cases::cases;
 use saltus_fit::Verdict;
-use typed::{fit, trusted};
 
 const NAMES: [&str; 4] = ["bounce height", "height after bounce", "rebound_height", "rebounds"];
 

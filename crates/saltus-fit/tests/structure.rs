@@ -1,8 +1,6 @@
 //! The stages are folders whose arrows point downwards only, and no files import each other in a
 //! ring.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,7 +1,5 @@
 //! The study's table of a squash ball on cement, number by number.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
 use saltus_fit::{Estimate, Fit, ReadOptions, Report, Source, Table, Verdict};
 
 const STUDY: &str = "# frame rate: 30\n# gravity: 9.8 m/s^2\nevent,time_s,height_cm\nrelease,0,100\ncontact,0.45,\n\

@@ -1,14 +1,10 @@
 //! What files say otherwise than by the names of columns: by their own name, by what joins the
 //! cells of LaTeX, by the numbers of a signal, by a line of which nothing was read.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
-mod typed;
-
+use crate::typed::{fit, read, trusted};
 use proptest::prelude::*;
 use saltus_cases::cases;
 use saltus_fit::{Fit, ReadOptions, Report, Table, TableError, Verdict};
-use typed::{fit, read, trusted};
 
 fn near(found: f64, e: f64, by: f64) -> bool {
     (found - e).abs() < by

@@ -1,8 +1,6 @@
 //! A COR is a ratio: of heights in any scale, of times in any. What has none of its own is read all
 //! the same, and says the same.
 
-#![allow(clippy::panic, clippy::unwrap_used)] // a test that cannot go on has failed
-
 use std::fmt::Write as _;
 
 use proptest::prelude::*;

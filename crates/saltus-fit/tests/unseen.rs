@@ -1,8 +1,6 @@
 //! What no reading shows: the interval holds the truth whatever it is within what is supposed of
 //! it, and is short where it is stated.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
 use proptest::prelude::*;
 use saltus_cases::cases;
 use saltus_fit::{Ball, Cor, Fit, ReadOptions, Table, Verdict, Widening};

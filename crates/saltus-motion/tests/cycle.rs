@@ -1,16 +1,14 @@
 //! Loops and mirrors: what is played for ever closes, and what is turned around twice is what it
 //! was.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
 use std::f64::consts::TAU;
 
 use proptest::prelude::*;
 use saltus_motion::{Export, Format, Frames, Motion, Shape, Snap};
 use serde_json::Value;
 
-mod drop;
-use drop::drop;
+use crate::drop;
+use crate::drop::drop;
 
 fn frames() -> Frames {
     Frames::new("24".parse().unwrap())

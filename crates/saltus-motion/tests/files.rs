@@ -1,7 +1,5 @@
 //! Every format is read back by a reader that is not ours, and compared with the closed form.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
 use saltus_motion::{Contact, Export, File, Format, Frames, Motion, Piece, Snap, Stretch, Track};
 use serde_json::Value;
 

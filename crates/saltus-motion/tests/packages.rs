@@ -1,15 +1,11 @@
 //! What is in an archive is the plain export, bit for bit, and lies where it should.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
 use std::io::{Cursor, Read};
 
-use drop::drop;
+use crate::drop::drop;
 use saltus_motion::{Export, Format, Frames, Motion};
 use serde_json::Value;
 use zip::{CompressionMethod, ZipArchive};
-
-mod drop;
 
 fn written(motion: &Motion, format: Format) -> Vec<u8> {
     let frames = Frames::new("24".parse().unwrap());

@@ -1,13 +1,9 @@
 //! What programs that load the files have stumbled over, each on the content of the file; and the
 //! formats for the browser, for text and for sound.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
-use drop::{G, drop};
+use crate::drop::{G, drop};
 use saltus_motion::{Contact, Export, File, Format, Frames, Motion, Piece, Shape, Stretch, Track};
 use serde_json::Value;
-
-mod drop;
 
 const SQUASHED: Shape = Shape { squash: 0.3, stretch: 0.2, hold: 2.0 / 24.0 };
 

@@ -1,15 +1,13 @@
 //! What a reader of a file measures is at most what the export says of it: random motions in space,
 //! formats, frame rates, squash and stretch.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
-use glb::{channels, seen};
+use crate::glb::{channels, seen};
 use proptest::prelude::*;
 use saltus_cases::cases;
 use saltus_motion::{Contact, Export, File, Format, Frames, Motion, Piece, Shape, Stretch, Track};
 use serde_json::Value;
 
-mod glb;
+use crate::glb;
 
 /// What single precision and the digits of a picture add, of the size of the motion.
 const READER: f64 = 2e-6;

@@ -1,18 +1,13 @@
 //! Squash, stretch and spin, read back from glTF by its own crate, and from the other formats by
 //! plain parsing.
 
-#![allow(clippy::unwrap_used, clippy::panic)] // a test that cannot go on has failed
-
-use drop::{G, drop};
-use glb::{channels, seen};
+use crate::drop::{G, drop};
+use crate::glb::{channels, seen};
 use gltf::animation::Property;
 use proptest::prelude::*;
 use saltus_cases::cases;
 use saltus_motion::{Contact, Export, Format, Frames, Motion, Piece, Shape, Snap, Stretch, Track};
 use serde_json::Value;
-
-mod drop;
-mod glb;
 
 fn frames() -> Frames {
     Frames::new("24".parse().unwrap())

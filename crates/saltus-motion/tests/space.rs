@@ -1,12 +1,8 @@
 //! A planted ball is read back in every unit and with either axis upwards.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
-use drop::{G, drop};
+use crate::drop::{G, drop};
 use saltus_motion::{Export, File, Format, Frames, Motion, Shape, Space, Unit, Up};
 use serde_json::Value;
-
-mod drop;
 
 /// Where the ball is aside, in m, and how fast it turns about that axis, in rad/s.
 const ASIDE: f64 = 0.25;

@@ -1,8 +1,6 @@
 //! Charts: dots in the colour of their line, limits, points that are called out, and what is too
 //! small for an axis by powers of ten.
 
-#![allow(clippy::unwrap_used, reason = "a test may fail")]
-
 use roxmltree::{Document, Node};
 use saltus_plot::{Background, Chart, Measure, Stroke};
 

@@ -1,8 +1,6 @@
 //! Data at the edge: each gives a picture or one clear error, never a panic and never a strange
 //! number.
 
-#![allow(clippy::unwrap_used, reason = "a test may fail")]
-
 use saltus_plot::{HeightTime, Mark, Measured, PlotError, Residual, Stroke};
 
 fn drop() -> Stroke {

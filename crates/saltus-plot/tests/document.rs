@@ -1,8 +1,6 @@
 //! What every picture must be, whatever is in it.
 
-#![allow(clippy::unwrap_used, reason = "a test may fail")]
-
-mod pictures;
+use crate::pictures;
 
 use std::path::Path;
 

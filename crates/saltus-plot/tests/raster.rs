@@ -1,8 +1,6 @@
 //! The squash picture as pixels: what is visible of the text of the SVG.
 
-#![allow(clippy::unwrap_used, reason = "a test may fail")]
-
-mod pictures;
+use crate::pictures;
 
 use resvg::{tiny_skia, usvg};
 

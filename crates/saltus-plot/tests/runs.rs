@@ -1,13 +1,10 @@
 //! Pictures of runs: the curve is the run, both limits of a jump are shown, names and units are
 //! there, and no words overlap.
 
-#![allow(clippy::unwrap_used, reason = "a test may fail")]
-
 use proptest::prelude::*;
 use roxmltree::{Document, Node};
 use saltus::{Clock, Coords, Hybrid, RunOf, Simulation, State};
 use saltus_cases::cases;
-use saltus_instances as _;
 use saltus_plot::{Background, Panels, Phase, PlotError};
 
 type Point = (f64, f64);

@@ -1,7 +1,5 @@
 //! Scenes that say nothing of when to stop: what ends by itself, and what is refused.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
 use saltus_scene::Scene;
 use saltus_scene::plan::{End, Record};
 

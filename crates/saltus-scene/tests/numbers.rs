@@ -1,7 +1,5 @@
 //! The numbers of every example scene, to the last digit: when it jumps, and how it ends.
 
-#![allow(clippy::unwrap_used, clippy::panic)] // a test that cannot go on has failed
-
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;

@@ -1,8 +1,6 @@
 //! A ball on ground that goes straight from point to point, against a reference that knows only
 //! distances.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
 use nalgebra::{Vector2, vector};
 use saltus_scene::plan::Record;
 use saltus_scene::{Kind, Scene};

@@ -1,8 +1,6 @@
 //! Every number of a scene file, from zero to beyond what can be right: what comes of it is a run,
 //! or an error that says the range.
 
-#![allow(clippy::unwrap_used, clippy::panic)] // a test that cannot go on has failed
-
 use std::collections::BTreeSet;
 
 use saltus_scene::{Run, Template};

@@ -1,7 +1,5 @@
 //! What a run of a scene leaves: its record, and the outcome that is watched for without one.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
 use saltus_scene::plan::{self, Outcome};
 use saltus_scene::{Record, Run, Scene};
 

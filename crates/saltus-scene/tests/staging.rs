@@ -1,7 +1,5 @@
 //! The stated error of a file bounds what its readers measure, for every example scene.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
 use std::fs;
 use std::path::Path;
 

@@ -1,7 +1,5 @@
 //! The texts that are scenes, and the errors of those that are not.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
 use saltus_scene::{Contact, Scene};
 
 fn message(toml: &str) -> String {

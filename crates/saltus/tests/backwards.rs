@@ -1,12 +1,9 @@
 //! Backwards through jumps: there and back again.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
 use saltus::nalgebra::{Vector2, vector};
 use saltus::{
     About, Automaton, Dop853, Edges, ErrorKind, Hybrid, Invertible, Refusal, Reversed, Simulation, Solution, Stop,
 };
-use saltus_instances as _;
 
 const G: f64 = 9.81;
 const COR: f64 = 0.7;

@@ -1,14 +1,11 @@
 //! What is not a number, or cannot be gone on from, is an error at once: with its kind, mode, edge,
 //! time and state.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
 use proptest::prelude::*;
 use saltus::{
     Automaton, Clock, Clocks, Edges, Error, ErrorKind, Hybrid, Limit, Polynomial, Refusal, Simulation, Solution, Stop,
 };
 use saltus_cases::cases;
-use saltus_instances as _;
 
 /// What a model gives in place of a number, from some time on.
 const BAD: [f64; 3] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY];

@@ -1,13 +1,10 @@
 //! Clocks against integers: every tick once, in order, also where several coincide.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
 use std::ops::ControlFlow;
 
 use proptest::prelude::*;
 use saltus::{About, Automaton, Clock, Clocks, Edges, Entry, ErrorKind, Hybrid, JumpOf, Observer, Refusal, Simulation};
 use saltus_cases::cases;
-use saltus_instances as _;
 
 /// Clocks that count, and one guard of time.
 struct Clocked {

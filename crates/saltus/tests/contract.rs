@@ -1,14 +1,10 @@
 //! What the engine asks of a model and promises it: edges, resets that refuse, limits, modes,
 //! clocks with derivatives.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
-mod methods;
-
 use proptest::prelude::*;
 use saltus::{About, Automaton, Edge, Edges, Entry, ErrorKind, Hybrid, Limit, Refusal, Simulation, Solution, Stop};
 
-use methods::methods;
+use crate::methods::methods;
 
 /// A rising line with a mark at each integer, watched by as many edges, listed in one of three
 /// ways.

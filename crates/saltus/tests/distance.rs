@@ -1,10 +1,7 @@
 //! Comparing runs whose jumps differ by a hair.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
 use saltus::nalgebra::{Vector2, vector};
 use saltus::{Closeness, Dop853, Hybrid, Polynomial, RunOf, Simulation};
-use saltus_instances as _;
 
 type Ball = Hybrid<'static, Vector2<f64>>;
 

@@ -1,12 +1,10 @@
 //! A flow that is no number beyond its guard: the run comes to the crossing from inside.
 
-mod methods;
-
 use proptest::prelude::*;
 use saltus::{About, Automaton, Edges, ErrorKind, FailedOf, Hybrid, Refusal, RunOf, Simulation, Solution, Stop};
 use saltus_cases::cases;
 
-use methods::methods;
+use crate::methods::methods;
 
 type Ball<'a> = Hybrid<'a, [f64; 2]>;
 

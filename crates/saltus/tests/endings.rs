@@ -1,10 +1,6 @@
 //! Each run ends, and its ending has a name: limits, endless spans, limits of jumps, what cannot go
 //! on.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
-mod methods;
-
 use std::time::Duration;
 
 use proptest::prelude::*;
@@ -15,7 +11,7 @@ use saltus::{
 };
 use saltus_cases::cases;
 
-use methods::methods;
+use crate::methods::methods;
 
 /// Spans from a moment to for ever; at the end of none is a jump due, which rounding would decide.
 const SPANS: [f64; 6] = [1.5, 1e6, 1e16, 1e100, f64::MAX, f64::INFINITY];

@@ -1,15 +1,11 @@
 //! What is due at one time, as a mode is entered or on the way: in the order listed, and not again
 //! where a jump has left it.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
-mod methods;
-
 use proptest::prelude::*;
 use saltus::{Edge, Entry, ErrorKind, Hybrid, Jet, Polynomial, Simulation, Stop};
 use saltus_cases::cases;
 
-use methods::methods;
+use crate::methods::methods;
 
 /// What the guard of an edge does as the mode is entered.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,10 +1,6 @@
 //! Spans of any length, endless ones among them, and runs of very many jumps: the same motion, at
 //! the same cost a jump.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
-mod methods;
-
 use std::ops::ControlFlow;
 
 use proptest::prelude::*;
@@ -12,7 +8,7 @@ use saltus::nalgebra::{Vector2, vector};
 use saltus::{Auto, Hybrid, JumpOf, Observer, Simulation, Stop};
 use saltus_cases::cases;
 
-use methods::methods;
+use crate::methods::methods;
 
 const GRAVITY: f64 = 9.81;
 

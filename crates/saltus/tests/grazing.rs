@@ -1,9 +1,5 @@
 //! A guard that turns within the error of a step: the crossing is right, or doubted.
 
-#![allow(clippy::unwrap_used)] // a test that cannot run should fail
-
-mod methods;
-
 use std::f64::consts::TAU;
 
 use nalgebra::{Vector2, vector};
@@ -12,7 +8,7 @@ use saltus::cross::Doubt;
 use saltus::{Certificate, Entry, Filippov, Hybrid, Side, Sides, Simulation};
 use saltus_cases::cases;
 
-use methods::methods;
+use crate::methods::methods;
 
 /// How often a guard falls that turns `miss` above zero (below, if negative) three times, at x = -1
 /// of an oscillator, in three forms; and how often that is doubted. With the `sign` -1 it is below

@@ -1,17 +1,13 @@
 //! Many guards on one step: what they are asked at is made once, and none changes what another
 //! shows.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
-mod methods;
-
 use std::cell::Cell;
 
 use proptest::prelude::*;
 use saltus::{About, Auto, Automaton, Edges, Entry, Refusal, Simulation, State, Stats, Stop};
 use saltus_cases::cases;
 
-use methods::methods;
+use crate::methods::methods;
 
 thread_local! {
     /// How many states were made of another one.

@@ -1,14 +1,10 @@
 //! Any number of guards that are zero, but for rounding, as a mode is entered: none is forgotten.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
-mod methods;
-
 use proptest::prelude::*;
 use saltus::{About, Auto, Automaton, Edges, Refusal, Simulation};
 use saltus_cases::cases;
 
-use methods::methods;
+use crate::methods::methods;
 
 /// The most balls side by side.
 const MOST: usize = 24;

@@ -1,8 +1,6 @@
 //! A crossing that a false promise of the model hides is an error, or leaves a doubt: a guard is
 //! below zero where an arc ends.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
 use proptest::prelude::*;
 use saltus::cross::Doubt;
 use saltus::{About, Automaton, Edges, Entry, Error, ErrorKind, Fall, Polynomial, Refusal, Simulation, Solution, Stop};

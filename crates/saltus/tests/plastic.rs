@@ -1,15 +1,11 @@
 //! Impacts that are nearly plastic, on floors that move: rebounds too low for the guard's values to
 //! show them, and no ball that falls through.
 
-#![allow(clippy::unwrap_used, clippy::panic)] // a test that cannot go on has failed
-
-mod methods;
-
 use std::f64::consts::TAU;
 
 use saltus::{Cause, Entry, Hybrid, Simulation, Stop};
 
-use methods::methods;
+use crate::methods::methods;
 
 const GRAVITY: f64 = 9.81;
 

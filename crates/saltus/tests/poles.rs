@@ -1,15 +1,12 @@
 //! Guards that change sign without coming to zero: a pole is no crossing, a leap is one that is
 //! doubted, and a steep root is neither.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
 use std::f64::consts::PI;
 
 use proptest::prelude::*;
 use saltus::cross::Doubt;
 use saltus::{Certificate, Entry, Hybrid, Simulation};
 use saltus_cases::cases;
-use saltus_instances as _;
 
 /// The times of the jumps where `guard` of time falls, and of the doubts that its continuity
 /// leaves.

@@ -1,15 +1,11 @@
 //! Guards that are promised affine: what is so is believed, what is not is an error or does no
 //! harm.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
-mod methods;
-
 use proptest::prelude::*;
 use saltus::{Edge, Entry, ErrorKind, Hybrid, Signal, Simulation};
 use saltus_cases::cases;
 
-use methods::methods;
+use crate::methods::methods;
 
 /// A guard that is promised affine and reads the time, or bends, is an error that names it; one
 /// whose constants are of any size is believed.

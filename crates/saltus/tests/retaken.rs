@@ -1,17 +1,13 @@
 //! Edges of a mode to itself whose resets change nothing: each fall is one jump, however near two
 //! of them lie and however coarse the numbers of time are.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
-mod methods;
-
 use std::f64::consts::PI;
 
 use proptest::prelude::*;
 use saltus::{Auto, Coords, Entry, ErrorKind, Hybrid, Polynomial, Simulation, State, Stop};
 use saltus_cases::cases;
 
-use methods::methods;
+use crate::methods::methods;
 
 type Counter<'a> = Hybrid<'a, f64>;
 

@@ -1,11 +1,8 @@
 //! A run as a table: regular times, and both limits at each jump.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
 use proptest::prelude::*;
 use saltus::{Clock, Coords, Hybrid, JumpTable, Sample, Sampler, SamplingError, Simulation};
 use saltus_cases::cases;
-use saltus_instances as _;
 
 type Rows = Vec<Sample<&'static str, f64>>;
 

@@ -1,8 +1,6 @@
 //! What a motion's own scales are changes nothing: long and short times, far origins, flat and
 //! steep guards, small coordinates beside large ones.
 
-mod methods;
-
 use std::f64::consts::PI;
 use std::fmt;
 
@@ -13,7 +11,7 @@ use saltus::{
 };
 use saltus_cases::cases;
 
-use methods::methods;
+use crate::methods::methods;
 
 const GRAVITY: f64 = 9.81;
 /// Bounces lower than so many roundings of their height are hidden by these: what `FAR` times

@@ -1,10 +1,7 @@
 //! Flows that are given over jets, and solved by their Taylor series.
 
-#![allow(clippy::unwrap_used)] // in what the tests share
-
 use proptest::prelude::*;
 use saltus::{About, Automaton, Coords, Dop853, Edges, ErrorKind, Hybrid, Refusal, Series, Simulation, Solution, Stop};
-use saltus_instances as _;
 
 /// A ball under quadratic drag, in the smooth modes rising and falling or, `whole`, in one with a
 /// kink at rest.

@@ -1,10 +1,7 @@
 //! Samples as inputs, against integrals and laws that hold for all samples.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
 use proptest::prelude::*;
 use saltus::{Hybrid, Signal, SignalError, Simulation};
-use saltus_instances as _;
 
 type Samples = Vec<(f64, f64)>;
 

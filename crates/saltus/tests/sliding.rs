@@ -1,7 +1,5 @@
 //! Sliding on a surface of discontinuity: ways in and out, drift, and what has no answer.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
 use proptest::prelude::*;
 use saltus::nalgebra::{self, Vector2, vector};
 use saltus::{Auto, Automaton, Dop853, ErrorKind, Filippov, Rodas5P, Side, Sides, Simulation, Stop, Tsit5, TwoSided};

@@ -1,7 +1,5 @@
 //! Patterns of Jacobians: found, colored, solved, and refused where they leave out an entry.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
 use std::collections::BTreeSet;
 
 use proptest::prelude::*;

@@ -1,13 +1,11 @@
 //! A flow that runs along a guard's surface: an edge whose guard stays zero has not fallen, however
 //! the steps drift, and falls where the flow carries it down.
 
-mod methods;
-
 use proptest::prelude::*;
 use saltus::nalgebra::{self, Vector2, Vector3, vector};
 use saltus::{FailedOf, Hybrid, RunOf, Simulation, State, Stop};
 
-use methods::methods;
+use crate::methods::methods;
 
 /// Runs by one of three methods.
 fn run<'a, X: State>(

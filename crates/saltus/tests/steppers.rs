@@ -4,15 +4,11 @@
 //! The counts are pinned, so that a change of the methods or of the step control shows here as a
 //! change of price.
 
-#![allow(clippy::unwrap_used)] // in what the tests share
-
-mod methods;
-
 use saltus::nalgebra::{Vector2, Vector3, Vector4, vector};
 use saltus::step::{Dop853, Rodas5P, Stepper, Trial, Tsit5};
 use saltus::{Auto, Coords, Entry, Hybrid, RunOf, Simulation, State, Stop};
 
-use methods::methods;
+use crate::methods::methods;
 
 /// Runs the one mode "flow" of `system` with equal relative and absolute tolerance.
 fn run<'b, S: State>(

@@ -1,12 +1,8 @@
 //! The default notices that a flow is stiff, and that it is so no more.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
-mod methods;
-
 use saltus::{Hybrid, RunOf, Simulation, State, Stop};
 
-use methods::methods;
+use crate::methods::methods;
 
 /// A model, its start and its end.
 struct Case<S> {

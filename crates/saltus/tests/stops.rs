@@ -1,13 +1,9 @@
 //! Times at which a flow is not smooth: each is met exactly, and nothing else happens there.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
-mod methods;
-
 use proptest::prelude::*;
 use saltus::{Clock, Edge, Entry, ErrorKind, Filippov, Hybrid, Reversed, RunOf, Side, Sides, Signal, Simulation};
 
-use methods::methods;
+use crate::methods::methods;
 
 /// An input that is constant between its knots.
 #[derive(Clone, Debug)]

@@ -1,15 +1,12 @@
 //! Bodies that touch each other and lie still but for rounding, which moves them by 1e-17 and lets
 //! them collide without end or order.
 
-#![allow(clippy::unwrap_used)] // in what the tests share
-
 use std::f64::consts::PI;
 
 use proptest::prelude::*;
 use saltus::nalgebra::SVector;
 use saltus::{Entry, Hybrid, Simulation, Stop};
 use saltus_cases::cases;
-use saltus_instances as _;
 
 /// Displacements of five balls that hang side by side, in ball diameters, then their velocities.
 type Balls = SVector<f64, 10>;

@@ -1,13 +1,11 @@
 //! Units change nothing: what rounding leaves of a guard is the same part of the motion in each.
 
-mod methods;
-
 use proptest::prelude::*;
 use saltus::nalgebra::{self, Vector2, vector};
 use saltus::{Edge, ErrorKind, Failed, Filippov, Hybrid, Run, Sides, Simulation, Stop};
 use saltus_cases::cases;
 
-use methods::methods;
+use crate::methods::methods;
 
 /// A ball that falls from one `unit` on a floor, whose reset leaves it `below` the floor by this
 /// part of the fall.

@@ -1,7 +1,5 @@
 //! States of any length: the same run as that of an array, and what is refused.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
 use proptest::prelude::*;
 use saltus::{
     Auto, Automaton, Dop853, Edges, ErrorKind, Hybrid, Op, Refusal, Rodas5P, Series, Simulation, Solution, State, Stop,

@@ -2,16 +2,12 @@
 //! decides, however soon it turns, or how slowly it leads away, and jumps that drive each other at
 //! one instant do not end beyond a wall.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
-mod methods;
-
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use saltus::{Auto, Edge, Entry, ErrorKind, Hybrid, Simulation, Stop};
 use saltus_cases::cases;
 
-use methods::methods;
+use crate::methods::methods;
 
 /// Decades as a factor.
 fn ten(decades: f64) -> f64 {

@@ -1,7 +1,5 @@
 //! The command as the tests of the command line call it.
 
-#![allow(dead_code)] // each test file has a use for some of it
-
 pub(crate) mod place;
 
 use std::fs;

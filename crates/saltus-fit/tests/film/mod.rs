@@ -7,7 +7,6 @@ use crate::noise::Noise;
 use saltus_fit::{Fit, ReadOptions, Report, Table};
 
 /// What happens between floor and ball; not every test needs every kind.
-#[allow(dead_code)]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Contact {
     /// Nothing that takes time.

@@ -1,6 +1,6 @@
 //! Planted experiments: a true ball, a way of recording it, and a fault.
 
-use crate::ball::{Ball, G};
+use super::ball::{Ball, G};
 use crate::noise::Noise;
 use saltus_fit::{Fit, ReadOptions};
 

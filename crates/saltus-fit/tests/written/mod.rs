@@ -43,7 +43,6 @@ pub(crate) fn workbook(sheets: &[(&str, String)]) -> Vec<u8> {
 }
 
 /// The same of one sheet, with remarks on its cells.
-#[allow(dead_code)] // not every test has remarks
 pub(crate) fn remarked(rows: &[Vec<String>], remarks: &[&str]) -> Vec<u8> {
     let texts = remarks
         .iter()
@@ -93,7 +92,6 @@ fn workbook_with(sheets: &[(&str, String)], more: Vec<(String, String)>) -> Vec<
 }
 
 /// The cells of a table in text.
-#[allow(dead_code)] // not every test has its cells in text
 pub(crate) fn cells(text: &str) -> Vec<Vec<String>> {
     text.lines().map(|line| line.split(',').map(str::to_owned).collect()).collect()
 }

@@ -1,7 +1,5 @@
 //! A bouncing ball with a formula for every place.
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
-
 use saltus_motion::{Contact, Motion, Piece, Stretch, Track};
 
 pub(crate) const G: f64 = 9.81;

@@ -1,7 +1,5 @@
 //! Animations of glTF, read by its own crate.
 
-#![allow(clippy::unwrap_used, clippy::panic)] // a test that cannot go on has failed
-
 use gltf::animation::util::{ReadOutputs, Rotations};
 use gltf::animation::{Interpolation, Property};
 

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use saltus::{About, Automaton, Coords, Edges, Entry, JumpOf, Limit, Observer, Polynomial, Refusal, Simulation, Solution, State as _, Stop};
+use saltus::{About, Automaton, Coords, Edges, Entry, JumpOf, Limit, Observer, Refusal, Simulation, Solution, State as _, Stop};
 
 use super::{Answer, Jumps, MOST_EVENTS, State, System, TOLERANCE};
 

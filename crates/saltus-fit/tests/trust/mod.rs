@@ -1,15 +1,11 @@
 //! How often *trusted* is wrong, and how often what is sound is not trusted: planted experiments of
 //! every kind with every known fault.
 //!
-//! `cargo test -p saltus-fit --test trust` runs a few of each; with `RUNS=200` and `-- --nocapture`
+//! `cargo test -p saltus-fit trust::` runs a few of each; with `RUNS=200` and `-- --nocapture`
 //! it prints the table of docs/change/fitting-inside.md; `SEED=1000` begins at another number,
 //! `KIND=Film` runs one kind.
 
-#![allow(clippy::expect_used, clippy::panic, clippy::unwrap_used)]
-
 mod ball;
-#[path = "../noise/mod.rs"]
-mod noise;
 mod plant;
 
 use std::collections::BTreeMap;

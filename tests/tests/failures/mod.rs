@@ -2,7 +2,6 @@
 //!
 //! The references are closed forms; unless a test says otherwise g = 9.8 m/s².
 
-#![allow(clippy::unwrap_used)] // a test that cannot go on has failed
 #![allow(clippy::excessive_precision)] // references keep all their digits
 
 mod at_once;
