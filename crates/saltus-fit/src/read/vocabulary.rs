@@ -193,11 +193,12 @@ fn words() -> impl Iterator<Item = (&'static str, &'static [Atom])> {
 
 /// What a word means that is another one without its accents: before, in Czech, Danish and Turkish,
 /// where `pred` is short for predicted, `for` says nothing and `once` counts; signs of a number, or
-/// of a mean.
+/// of a mean; a fall, and no pad.
 pub(super) fn accented(word: &str) -> Option<&'static [Atom]> {
     match word {
         "před" | "før" | "önce" => Some(&[Atom::Before]),
         "č" | "št" => Some(&[Atom::Number]),
+        "pád" => Some(&[Atom::Release]),
         "śr" => Some(&[Atom::Mean]),
         _ => None,
     }
