@@ -7,6 +7,7 @@ mod counted;
 mod laps;
 mod latex;
 mod noted;
+mod numbered;
 mod parts;
 mod printed;
 mod sentences;
@@ -41,6 +42,8 @@ pub(super) fn table(text: &str) -> Option<String> {
     let text = &*of_one_unit(text).map_or(Cow::Borrowed(text), Cow::Owned);
     let forms = [
         latex::table,
+        numbered::table,
+        numbered::clocked,
         laps::table,
         wiki::table,
         blocks::led,
