@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-use super::{Columns, Kind};
+use super::{Column, Columns, Kind};
 use crate::read::heading::{At, Heading, Role, Value, What};
 use crate::read::region::Region;
 use crate::read::vocabulary::{Atom, ROWS};
@@ -59,12 +59,12 @@ impl Columns {
                 let few = times.len() >= SEVERAL && named.len() == rows.len() && most < SEVERAL;
                 // `1`, `2`, `3` below the name of balls at large.
                 if !few || region.counts(index) {
-                    return few && self.level(region);
+                    return few && self.level(region, &rows);
                 }
                 let Some(name) = named.first().and_then(|cell| stem(cell)) else { return false };
                 let alike = named.iter().all(|cell| stem(cell) == Some(name));
                 let trial = split(name).last().is_some_and(|w| w.is(Atom::Trial) || w.is(Atom::Repeat));
-                alike && (trial && times.len() == named.len() || self.level(region))
+                alike && (trial && times.len() == named.len() || self.level(region, &rows))
             };
             if column.kind == Kind::Setting && counted() {
                 self.columns[index].kind = Kind::Trial;
@@ -109,14 +109,16 @@ impl Columns {
     /// How many readings of one group a row holds, but those of release.
     fn beside(&self) -> usize {
         let read = |v: &Value| v.role == Role::Reading && !matches!(v.at, At::Release | At::Before);
-        let groups: Vec<&str> = self.values().filter(|(_, _, v)| read(v)).map(|(_, _, v)| v.group.as_str()).collect();
+        let known = |c: &Column| c.heading.unknown.is_empty();
+        let groups: Vec<&str> =
+            self.values().filter(|(_, c, v)| read(v) && known(c)).map(|(_, _, v)| v.group.as_str()).collect();
         let alike = |group: &&str| groups.iter().filter(|other| *other == group).count();
         groups.iter().map(alike).max().unwrap_or(1)
     }
 
-    /// Whether what stands before bounces is level, and so are rebounds, column by column, each as
-    /// a part of it.
-    fn level(&self, region: &Region<'_>) -> bool {
+    /// Whether what stands before bounces is level in these rows, and so are rebounds, column by
+    /// column, each as a part of it.
+    fn level(&self, region: &Region<'_>, rows: &[usize]) -> bool {
         let read = |v: &Value| matches!(v.what, What::Height | What::Speed) && v.role == Role::Reading;
         let (before, after): (Vec<_>, Vec<_>) =
             self.values().filter(|(_, _, v)| read(v)).partition(|(_, _, v)| matches!(v.at, At::Release | At::Before));
@@ -124,7 +126,7 @@ impl Columns {
         let level = |column: usize, what: What, of: Option<usize>| {
             let part = |&row: &usize| Some(number(row, column)? / of.map_or(Some(1.0), |n| number(row, n))?);
             let power = if what == What::Speed { 2 } else { 1 };
-            let mut parts: Vec<f64> = region.rows.iter().filter_map(part).map(|part| part.powi(power)).collect();
+            let mut parts: Vec<f64> = rows.iter().filter_map(part).map(|part| part.powi(power)).collect();
             let usual = median(&mut parts).unwrap_or_default();
             parts.iter().all(|part| *part < SAME * usual && usual < SAME * part)
         };
