@@ -10,7 +10,7 @@ use crate::read::units::Scale;
 use crate::read::vocabulary::folded;
 use crate::read::words::pieces;
 
-/// Temperatures that differ by less, in degrees, are those of one room through the day: nobody
+/// Temperatures that differ by no more, in degrees, are those of one room through the day: nobody
 /// cools or warms a ball by so little.
 const ROOM: f64 = 3.0;
 
@@ -68,7 +68,7 @@ impl Columns {
             let (low, high) = region
                 .numbers(index)
                 .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), n| (low.min(n), high.max(n)));
-            if high > low && high - low < ROOM {
+            if high > low && high - low <= ROOM {
                 self.leave(index, Why::Other);
             }
         }
