@@ -87,9 +87,14 @@ pub(super) fn read(cell: &str, comma: bool) -> Cell {
     let text = closed.as_deref().unwrap_or(text);
     // A reading in brackets is one that is not sure.
     let bare = text.strip_prefix('(').and_then(|t| t.strip_suffix(')')).filter(|t| !t.contains(['(', ')']));
+    let asks = text.ends_with('?');
     let (text, turned) = without_remark(bare.unwrap_or(text));
     let text = without_about(text);
     if let Some(range) = range(text, comma) {
+        // Whether a reading lies in a range that bears a unit is asked of it: `53-58 in?`.
+        if asks && range.unit.is_some() {
+            return Cell::Words;
+        }
         return Cell::Number(range);
     }
     let (number, error) = match split_error(text) {
