@@ -100,19 +100,21 @@ pub(super) fn turned<'a>(grid: &'a Grid<'a>) -> Option<Region<'a>> {
     found.into_iter().find(|region| !region.rows.is_empty() && (region.header.iter().any(says) || measured(region)))
 }
 
-/// Whether names in the first column bear the units, one of them that of a release, where the names
-/// of columns bear none: those count trials.
+/// Whether names in the first column bear the units, one of them that of a release or of a speed
+/// before a bounce, where the names of columns bear none: those count trials.
 pub(super) fn turned_by_units(grid: &Grid<'_>) -> bool {
     let bare = |name: &String| Heading::parse(name).unit.is_none();
     let upright = region::tables(View { grid, across: false });
     let names = turned(grid).filter(|_| upright.iter().all(|region| region.header.iter().all(bare)));
     let place = |name: &String| {
         let heading = Heading::parse(name);
-        let length = heading.unit.is_some_and(|unit| unit.dimension == Dimension::Length);
-        heading.value().filter(|_| length && heading.unknown.is_empty()).map(|value| value.at)
+        let read = |unit: Unit| matches!(unit.dimension, Dimension::Length | Dimension::Speed);
+        let measured = heading.unit.is_some_and(read);
+        heading.value().filter(|_| measured && heading.unknown.is_empty()).map(|value| value.at)
     };
+    let begins = |at: &At| matches!(at, At::Release | At::Before);
     let places: Vec<At> = names.iter().flat_map(|region| &region.header).filter_map(place).collect();
-    places.contains(&At::Release) && places.iter().any(|at| *at != At::Release)
+    places.iter().any(begins) && !places.iter().all(begins)
 }
 
 /// The column of a row with this text.
