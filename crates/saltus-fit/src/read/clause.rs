@@ -259,7 +259,9 @@ fn begun(text: &str) -> Option<Unit> {
     };
     let mut ends = ends.filter(|(head, rest)| measured(head) && whole(head, rest));
     let (found, rest) = ends.find_map(|(head, rest)| Some((unit(head)?, rest)))?;
-    let released = split(rest).iter().any(|word| word.is(Atom::Release)) && !measures(rest);
+    // A recording that begins releases nothing.
+    let lets = |word: &Word| word.is(Atom::Release) && !Phrase::Begins.is(&folded(&word.text));
+    let released = split(rest).iter().any(lets) && !measures(rest);
     (!released && !split(rest).iter().any(turns)).then_some(found)
 }
 
@@ -324,6 +326,7 @@ fn of_all(clause: &str) -> Option<Unit> {
             .all(|atom| matches!(atom, Atom::Filler | Atom::Height | Atom::Time | Atom::Read | Atom::Number)),
         _ => false,
     };
+    let plain = |word: &Word| plain(word) || Phrase::Lengths.is(&folded(&word.text));
     let words = split(name);
     if bracketed && words.len() > 1 && words.iter().all(plain) {
         return Some(unit);

@@ -3,7 +3,7 @@
 use saltus_bounce::units::Quantity;
 
 use super::phrases::Phrase;
-use super::vocabulary::{Atom, folded, meanings};
+use super::vocabulary::{Atom, folded, meanings, narrow};
 use super::words::{Kind, Word, split};
 
 /// What a unit measures, as far as a table of bounces asks.
@@ -134,8 +134,12 @@ impl Unit {
     }
 
     /// The units that a line states of all numbers, `Unit: cm`, `Units = cm, s`; none if it states
-    /// none. Every word before them has to be understood.
+    /// none. Every word before them has to be understood, or stands before the bracket that they
+    /// stand in: `Times of flight (unit: s)`.
     pub(super) fn listed(line: &str) -> Option<Vec<Self>> {
+        let plain = narrow(line);
+        let inside = plain.split_once('(').and_then(|(_, rest)| rest.split_once(')')).map(|(inside, _)| inside);
+        let line = inside.filter(|inside| names_unit(inside)).unwrap_or(&plain);
         let (name, units) = line.split_once([':', '=']).filter(|(name, _)| names_unit(name))?;
         let said = |word: &Word| !matches!(word.kind, Kind::Unknown) || names_unit(&word.text);
         let units = units.split([',', ';', '/', ' ']).filter(|word| !word.is_empty() && !Phrase::And.is(word));
