@@ -233,8 +233,16 @@ fn gathered(name: &str, node: &Node, above: &str, found: &mut Vec<Part>) {
             matches!(cell::read(cell, false), Cell::Number(m) if m.unit.is_some_and(unit))
         };
         let words = |cell: &&str| cell.contains(char::is_alphabetic) && !measured(cell) && !answers(cell);
-        let called = member.members().iter().filter_map(|(_, node)| node.cell()).find(words);
-        tables(&called.map_or_else(|| format!("trial {}", n + 1), str::to_owned), member, above, found);
+        let cells = || member.members().iter().filter_map(|(name, node)| Some((name, node.cell()?)));
+        // A letter below the name of a trial is of that: `"run": "A"`.
+        let letter = |(name, cell): &(&String, &str)| {
+            cell.chars().count() == 1 && matches!(Heading::parse(name).meaning, Meaning::Trial)
+        };
+        let called = cells().find(|(_, cell)| words(cell)).map(|named| match named {
+            (name, cell) if letter(&named) => format!("{name} {cell}"),
+            (_, cell) => cell.to_owned(),
+        });
+        tables(&called.unwrap_or_else(|| format!("trial {}", n + 1)), member, above, found);
     }
 }
 

@@ -101,6 +101,8 @@ impl Heading {
         let timed = has(Time) || of(Dimension::Time);
         // How long all lasted, or until the ball was at rest: `durée jusqu'à l'arrêt`.
         let rests = self.atoms.iter().filter(|atom| **atom == Rest).count() > 1;
+        // The top after an impact is that of a flight.
+        let tops = has(Atom::Top) && has(Atom::After);
         let whole = has(Interval) && (has(Total) && !has(Air) || rests && !has(Impact)) && !has(Between);
         if has(Speed) || of(Dimension::Speed) {
             What::Speed
@@ -115,7 +117,7 @@ impl Heading {
             || has(Distance)
             || of(Dimension::Length)
             || has(Percent)
-            || has(Rebound) && !has(Impact) && !(has(Number) && self.unit.is_none())
+            || has(Rebound) && (!has(Impact) || tops) && !(has(Number) && self.unit.is_none())
             || has(Release) && (placed || !has(Atom::Trial))
         {
             What::Height
