@@ -135,6 +135,7 @@ fn joined_up<'a>(
         };
         let said = (title.units.0.or(units.0), title.units.1.or(units.1));
         region.units = (region.units.0.or(said.0), region.units.1.or(said.1));
+        region.speed = title.speed.filter(|_| region.units == (None, None));
         region.drop = title.drop.as_ref().map(|(drop, _)| drop.clone());
         // Whoever states the zero or the height of release answers it.
         let answered = options.zero.or(options.drop).is_some();

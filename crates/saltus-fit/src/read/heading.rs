@@ -6,6 +6,7 @@ mod inside;
 mod kept;
 mod meaning;
 mod repeats;
+mod signs;
 
 use super::aside::Why;
 use super::units::{Dimension, Scale, Unit};
@@ -273,7 +274,7 @@ impl Heading {
 
     /// One of the coordinates that columns of one name hold, `ball_x` beside `ball_y`, or of one
     /// number, `X1` beside `Y1`.
-    pub(super) fn coordinate(text: &str, header: &[String]) -> Option<Self> {
+    fn coordinate(text: &str, header: &[String]) -> Option<Self> {
         let parted = |text: &str| {
             let end = text.find(['(', '[']).unwrap_or(text.len());
             let name = text[..end].trim_end();
@@ -307,7 +308,7 @@ impl Heading {
     }
 
     /// `h_i` beside `h_f`: before and after, where `h_i` by itself is counted.
-    pub(super) fn initial(text: &str, header: &[String]) -> Option<Self> {
+    fn initial(text: &str, header: &[String]) -> Option<Self> {
         let parted = |text: &str| {
             let (sign, rest) = text.split_once('_')?;
             let end = rest.find(|c: char| !c.is_alphanumeric()).unwrap_or(rest.len());

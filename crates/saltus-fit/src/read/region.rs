@@ -31,6 +31,8 @@ pub(super) struct Region<'a> {
     pub(super) rows: Vec<usize>,
     /// The units of times and lengths, where neither header nor options name one.
     pub(super) units: (Option<Unit>, Option<Unit>),
+    /// The unit of all speeds, where a line states one and none of times or lengths.
+    pub(super) speed: Option<Unit>,
     /// The height of release that stands above.
     pub(super) drop: Option<DropHeight>,
     /// What the scale of heights reads at the floor, as a line states.
@@ -57,6 +59,7 @@ impl<'a> Region<'a> {
             header_row,
             rows,
             units,
+            speed: None,
             drop: None,
             zero: None,
             frames: false,

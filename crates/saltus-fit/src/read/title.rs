@@ -14,10 +14,13 @@ use super::units::{Dimension, Unit};
 use super::vocabulary::{Atom, ROWS, folded, misspelt};
 use super::words::{Kind, Word, split};
 use super::{Event, Table};
-use crate::finding::{Doubt, Note};
+use crate::finding::{Doubt, Note, Remark};
 
 /// Heights of release are read within this part of the one that is stated: a centimetre or two.
 const NOMINAL: f64 = 0.03;
+
+/// Lengths that are written alike differ by less, m.
+const SAME: f64 = 1e-9;
 
 /// A title has no more words than this; more, of which not all are understood, are a sentence.
 const TITLE: usize = 4;
@@ -35,6 +38,8 @@ pub(super) struct Stated {
     pub(super) drop: Option<(DropHeight, u64)>,
     /// The units of all times and of all heights.
     pub(super) units: (Option<Unit>, Option<Unit>),
+    /// The unit of all speeds.
+    pub(super) speed: Option<Unit>,
     /// The standard errors of heights, m, and of times, s.
     pub(super) sigma: (Option<f64>, Option<f64>),
     /// What the scale reads at the floor.
@@ -150,6 +155,7 @@ impl Stated {
         Self {
             drop: self.drop.or_else(|| first.drop.clone()),
             units: (self.units.0.or(first.units.0), self.units.1.or(first.units.1)),
+            speed: self.speed.or(first.speed),
             sigma: (self.sigma.0.or(first.sigma.0), self.sigma.1.or(first.sigma.1)),
             datum: self.datum.or_else(|| first.datum.clone()),
             ..self
@@ -161,7 +167,8 @@ impl Stated {
         let place = match unit.dimension {
             Dimension::Time => &mut self.units.0,
             Dimension::Length => &mut self.units.1,
-            _ => return,
+            Dimension::Speed => &mut self.speed,
+            Dimension::Other => return,
         };
         *place = place.or(Some(unit));
     }
@@ -298,7 +305,19 @@ pub(super) fn doubted(region: &Region<'_>, table: &mut Table) {
 pub(super) fn unmet(title: &Stated, table: &Table) -> Option<Doubt> {
     let own = || table.trials.iter().flat_map(|t| &t.readings).filter(|r| r.event == Event::Release);
     let own = || own().filter_map(|reading| reading.height);
-    let sentence = title.length.as_ref().filter(|(_, _, lengths)| !lengths.iter().all(|m| own().any(|h| h == *m)));
+    // What the row of the floor reads is taken in, in whatever unit.
+    let floor = |note: &Remark<Note>| match &note.kind {
+        Note::Floor { reading, .. } => reading.replace(',', ".").parse::<f64>().ok(),
+        _ => None,
+    };
+    let floor = table.notes.iter().find_map(floor);
+    let at_floor = |m: f64| {
+        ["m", "cm", "mm", "in", "ft"]
+            .iter()
+            .any(|unit| Unit::parse(unit).zip(floor).is_some_and(|(unit, reads)| (unit.si(reads) - m).abs() < SAME))
+    };
+    let met = |m: &f64| own().any(|h| h == *m) || at_floor(*m);
+    let sentence = title.length.as_ref().filter(|(_, _, lengths)| !lengths.iter().all(met));
     let near = |drop: f64| own().any(|h| (h / drop - 1.0).abs() < NOMINAL);
     let metres = !table.metadata.ratios && !table.metadata.pixels;
     let other = |drop: f64| metres && own().next().is_some() && !near(drop);

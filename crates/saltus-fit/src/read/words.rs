@@ -255,7 +255,7 @@ pub(super) fn lettered(words: &mut [Word]) {
     }
     // An article stands before a word: at the end the letter is a name.
     let rebounds = words.iter().any(measured);
-    if let Some(last) = words.last_mut().filter(|last| last.text == "A" && rebounds) {
+    if let Some(last) = words.last_mut().filter(|last| matches!(&*last.text, "A" | "a") && rebounds) {
         last.kind = Kind::Letter;
     }
     for n in 0..words.len() {

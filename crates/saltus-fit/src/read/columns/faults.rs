@@ -95,7 +95,7 @@ impl Columns {
             }
             // What bears no unit may be called in one that is not known.
             let numbers = |n: usize| {
-                let unit = self.columns[n].unit.is_some();
+                let unit = self.columns[n].unit.or(region.units.1).is_some();
                 let measured = |cell: Cell| matches!(cell, Cell::Number(m) if unit || m.unit.is_some());
                 region.rows.iter().any(|&row| measured(region.view.read(row, n)))
             };

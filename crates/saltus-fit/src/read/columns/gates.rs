@@ -36,6 +36,25 @@ impl Column {
 }
 
 impl Columns {
+    /// `before` beside `after`, where a line states the unit of speeds and no other: all columns
+    /// that say no more than that are speeds.
+    pub(super) fn sped(&mut self, region: &Region<'_>) {
+        let Some(unit) = region.speed else { return };
+        let silent = |c: &Column, v: &Value| {
+            let sided = c.heading.has(Atom::Before) != c.heading.has(Atom::After);
+            sided && v.what == What::Unsaid && v.role == Role::Reading && c.unit.is_none()
+        };
+        if !self.values().all(|(_, c, v)| silent(c, v)) {
+            return;
+        }
+        for column in &mut self.columns {
+            let at = if column.heading.has(Atom::Before) { At::Before } else { At::After };
+            if let Kind::Value(value) = &mut column.kind {
+                (value.what, value.at, column.unit) = (What::Speed, at, Some(unit));
+            }
+        }
+    }
+
     /// What pairs of columns say together.
     pub(super) fn coupled(&mut self, region: &Region<'_>) {
         self.gates(region);
@@ -45,6 +64,7 @@ impl Columns {
         self.ranged(region);
         self.flights(region);
         self.up_to_from(region);
+        self.from_height();
         self.until_hit(region);
         self.until_rest(region);
     }
@@ -253,6 +273,18 @@ impl Columns {
         {
             self.leave(time, Why::Elsewhere);
             self.becomes(flight, What::Interval, At::Row);
+        }
+    }
+
+    /// `from what height` beside the height of a rebound, and no other: where each drop began.
+    fn from_height(&mut self) {
+        let height = |c: &Column| c.holds(What::Height) && c.heading.unknown.is_empty();
+        let leads = |c: &Column| words(c).first().is_some_and(|word| Phrase::From.is(word));
+        let from = |c: &Column| height(c) && leads(c) && c.heading.has(Atom::Height) && !c.heading.has(Atom::Floor);
+        let up = |c: &Column| height(c) && c.heading.has(Atom::Rebound) && !leads(c);
+        let Some((from, _)) = self.pair(from, up) else { return };
+        if self.values().filter(|(_, _, v)| v.what == What::Height).count() == 2 {
+            self.becomes(from, What::Height, At::Release);
         }
     }
 

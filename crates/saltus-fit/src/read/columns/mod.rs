@@ -121,9 +121,7 @@ impl Columns {
             unscaled: false,
         };
         for (index, text) in region.header.iter().enumerate() {
-            let told = Heading::coordinate(text, &region.header).or_else(|| Heading::flight(text, &region.header));
-            let told = told.or_else(|| Heading::initial(text, &region.header));
-            let heading = told.unwrap_or_else(|| Heading::parse(text));
+            let heading = Heading::beside(text, &region.header).unwrap_or_else(|| Heading::parse(text));
             found.push(if heading.unit.is_none() && of_hundredths(region, index) {
                 heading.hundredths()
             } else {
@@ -145,6 +143,7 @@ impl Columns {
         found.spanning(region);
         found.placed();
         found.flown();
+        found.sped(region);
         found.coupled(region);
         found.deltas(region);
         found.capital(region);

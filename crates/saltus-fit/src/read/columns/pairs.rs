@@ -344,7 +344,7 @@ impl Columns {
                 self.leave(index, Why::Other);
             }
         }
-        self.uncounted(region);
+        self.uncounted(region, parts);
         let Some(event) = self.one(&Kind::Event) else { return };
         let numbers = || region.rows.iter().filter(|&&row| region.view.is_number(row, event)).count();
         let words = || region.rows.iter().filter(|&&row| region.view.read(row, event) == Cell::Words).count();
@@ -354,8 +354,9 @@ impl Columns {
     }
 
     /// `bounce` beside heights of release, and nothing else: above numbers of which none follows the
-    /// one before it counts nothing, and is what each drop came back to.
-    fn uncounted(&mut self, region: &Region<'_>) {
+    /// one before it counts nothing, and is what each drop came back to; so is `rebound` above
+    /// numbers that are not whole, `parts`.
+    fn uncounted(&mut self, region: &Region<'_>, parts: impl Fn(usize) -> bool) {
         let Some((index, true)) = self.number() else { return };
         let cells = region.rows.iter().map(|&row| bounce(region.cell(row, index)));
         let numbers: Option<Vec<usize>> = cells.collect();
@@ -363,7 +364,8 @@ impl Columns {
         let apart = numbers.is_some_and(|n| n.len() > 1 && n.iter().all(|n| *n > 1) && !follows(&n));
         let read: Vec<At> = self.values().filter(|(_, _, v)| v.role != Role::Error).map(|(_, _, v)| v.at).collect();
         let of_drops = read == [At::Release];
-        if apart && of_drops && self.columns[index].heading.unit.is_none() {
+        let rebounds = self.columns[index].heading.has(Atom::Rebound) && parts(index);
+        if (apart || rebounds) && of_drops && self.columns[index].heading.unit.is_none() {
             self.columns[index].kind = Kind::Value(Value::of(What::Height));
         }
     }

@@ -4,7 +4,7 @@ use super::Heading;
 
 impl Heading {
     /// The flight between two contacts, `t12 (s)`, `t_23_s`, where the first two stand in the row.
-    pub(in crate::read) fn flight(text: &str, header: &[String]) -> Option<Self> {
+    pub(super) fn flight(text: &str, header: &[String]) -> Option<Self> {
         let (first, unit) = between(text)?;
         let stands = |n: u32| header.iter().filter_map(|name| between(name)).any(|(first, _)| first == n);
         (stands(1) && stands(2)).then(|| Self::parse(&format!("flight time {first}{unit}")).called(text))
