@@ -377,6 +377,7 @@ fn sheets(name: &str, parts: Vec<Part>, options: &ReadOptions) -> Result<Table, 
         };
         return Err(first.unwrap_or_else(none));
     }
+    pool::copied(name, &found)?;
     let computed = pool::computed(&mut found);
     aside.extend(computed.into_iter().map(|(label, _)| (label, Why::Computed)));
     let ratios = pool::measured(&mut found, |(_, table)| table);

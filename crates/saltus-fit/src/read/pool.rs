@@ -108,6 +108,26 @@ pub(super) fn measured<T>(parts: &mut Vec<T>, table: impl Fn(&T) -> &Table) -> V
     found
 }
 
+/// So many rebounds, and half of all, are the same from other drops by no chance.
+const COPIED: usize = 3;
+
+/// Two sheets of as many drops, whose rebounds are the same in many of the same rows, but from
+/// other heights of release, are a question: one of them is a copy, and one of them is wrong.
+pub(super) fn copied(name: &str, parts: &[(String, Table)]) -> Result<(), TableError> {
+    let copy = |one: &Table, other: &Table| {
+        let pairs = || one.trials.iter().map(drop).zip(other.trials.iter().map(drop));
+        let again = |pair: &(Option<(f64, f64)>, Option<(f64, f64)>)| matches!(pair, (Some((from, to)), Some((of, up))) if to == up && from != of);
+        let count = pairs().filter(again).count();
+        one.trials.len() == other.trials.len() && count >= COPIED && 2 * count >= one.trials.len()
+    };
+    let pairs = (0..parts.len()).flat_map(|n| (0..n).map(move |before| (before, n)));
+    let mut found = pairs.filter(|&(one, other)| copy(&parts[one].1, &parts[other].1));
+    let Some((one, other)) = found.next().map(|(one, other)| (&parts[one].0, &parts[other].0)) else { return Ok(()) };
+    let message = format!("the sheets '{one}' and '{other}' hold the same rebounds from other drops");
+    let help = format!("give the one that is right, such as --sheet '{one}'");
+    Err(TableError::new(name, message).question().help(help))
+}
+
 /// The height of release and that of the rebound, of a trial that holds these alone.
 fn drop(trial: &Trial) -> Option<(f64, f64)> {
     match trial.readings.as_slice() {
