@@ -114,10 +114,11 @@ const COPIED: usize = 3;
 /// Two sheets of as many drops, whose rebounds are the same in many of the same rows, but from
 /// other heights of release, are a question: one of them is a copy, and one of them is wrong.
 pub(super) fn copied(name: &str, parts: &[(String, Table)]) -> Result<(), TableError> {
+    let again = |(one, other): (&Trial, &Trial)| {
+        drop(one).zip(drop(other)).is_some_and(|((from, to), (of, up))| to == up && from != of)
+    };
     let copy = |one: &Table, other: &Table| {
-        let pairs = || one.trials.iter().map(drop).zip(other.trials.iter().map(drop));
-        let again = |pair: &(Option<(f64, f64)>, Option<(f64, f64)>)| matches!(pair, (Some((from, to)), Some((of, up))) if to == up && from != of);
-        let count = pairs().filter(again).count();
+        let count = one.trials.iter().zip(&other.trials).filter(|pair| again(*pair)).count();
         one.trials.len() == other.trials.len() && count >= COPIED && 2 * count >= one.trials.len()
     };
     let pairs = (0..parts.len()).flat_map(|n| (0..n).map(move |before| (before, n)));

@@ -64,7 +64,7 @@ impl Columns {
         self.ranged(region);
         self.flights(region);
         self.up_to_from(region);
-        self.from_height();
+        self.released_from();
         self.until_hit(region);
         self.until_rest(region);
     }
@@ -277,7 +277,7 @@ impl Columns {
     }
 
     /// `from what height` beside the height of a rebound, and no other: where each drop began.
-    fn from_height(&mut self) {
+    fn released_from(&mut self) {
         let height = |c: &Column| c.holds(What::Height) && c.heading.unknown.is_empty();
         let leads = |c: &Column| words(c).first().is_some_and(|word| Phrase::From.is(word));
         let from = |c: &Column| height(c) && leads(c) && c.heading.has(Atom::Height) && !c.heading.has(Atom::Floor);

@@ -10,73 +10,77 @@ use super::super::words::split;
 use super::silent;
 use super::values::LIST;
 
-/// The text with a row for each of such lines, whose times fall, and its other lines as remarks,
-/// which measure nothing; `None` if it is none. A line stays a line.
+/// A time of a list: its place, how it is written, and in s.
+struct Time {
+    count: usize,
+    written: String,
+    seconds: f64,
+}
+
+/// The text with a row for each line that is the time of a flight, where these fall, below a line
+/// that says what they are; `None` if it is none. A line stays a line.
 pub(super) fn table(text: &str) -> Option<String> {
-    let lines: Vec<(&str, Option<(usize, &str, f64)>)> = text.lines().map(|line| (line, counted(line))).collect();
-    let times: Vec<(usize, &str, f64)> = lines.iter().filter_map(|(_, time)| *time).collect();
-    let first = lines.iter().position(|(_, time)| time.is_some())?;
-    let in_order = times.iter().enumerate().all(|(n, (count, _, _))| *count == n + 1);
-    let falls = times.windows(2).all(|pair| pair[1].2 < pair[0].2);
     let says = |line: &str| {
         let words = split(line);
         let is = |atoms: &[Atom]| words.iter().any(|word| atoms.iter().any(|atom| word.is(*atom)));
         is(&[Atom::Air, Atom::Between, Atom::Interval]) && !is(&[Atom::Predicted, Atom::Goal, Atom::Derived])
     };
-    let flights = lines[..first].iter().any(|(line, _)| says(line));
+    let above = text.lines().take_while(|line| counted(line).is_none());
+    let flights = above.filter(|line| says(line)).count() > 0;
+    listed(text, counted, "bounce\tflight time", |before, after| after < before).filter(|_| flights)
+}
+
+/// The text with a row for each line that is a contact and the time of a clock, where these rise;
+/// `None` if it is none.
+pub(super) fn clocked(text: &str) -> Option<String> {
+    let bare = !text.contains(['\t', ';', '|']);
+    listed(text, contact, "impact\ttime", |before, after| after > before).filter(|_| bare)
+}
+
+/// The text with the times of a list, counted from 1, below `names`, and its other lines as
+/// remarks, which measure nothing; `follows` tells whether a time may stand behind another one.
+fn listed(
+    text: &str,
+    read: fn(&str) -> Option<Time>,
+    names: &str,
+    follows: impl Fn(f64, f64) -> bool,
+) -> Option<String> {
+    let lines: Vec<(&str, Option<Time>)> = text.lines().map(|line| (line, read(line))).collect();
+    let times: Vec<&Time> = lines.iter().filter_map(|(_, time)| time.as_ref()).collect();
+    let first = lines.iter().position(|(_, time)| time.is_some())?;
+    let in_order = times.iter().enumerate().all(|(n, time)| time.count == n + 1);
+    let ordered = times.windows(2).all(|pair| follows(pair[0].seconds, pair[1].seconds));
     let others = lines.iter().filter(|(_, time)| time.is_none()).all(|(line, _)| silent(line));
-    if times.len() < LIST || !(in_order && falls && flights && others) {
+    if times.len() < LIST || !(in_order && ordered && others) {
         return None;
     }
-    let spelt = |(n, (line, time)): (usize, &(&str, Option<(usize, &str, f64)>))| match time {
+    let spelt = |(n, (line, time)): (usize, &(&str, Option<Time>))| match time {
         // A lone carriage return ends a row, and no line.
-        Some((count, time, _)) if n == first => format!("bounce\tflight time\r{count}\t{time}"),
-        Some((count, time, _)) => format!("{count}\t{time}"),
+        Some(Time { count, written, .. }) if n == first => format!("{names}\r{count}\t{written}"),
+        Some(Time { count, written, .. }) => format!("{count}\t{written}"),
         None if line.trim().is_empty() => String::new(),
         None => format!("#{}", line.trim_start_matches('#')),
     };
     Some(lines.iter().enumerate().map(spelt).collect::<Vec<_>>().join("\n") + "\n")
 }
 
-/// The place of a line in its list, and the time that it is, as it is written and in s.
-fn counted(line: &str) -> Option<(usize, &str, f64)> {
+/// The time that a line is, behind its place in a list.
+fn counted(line: &str) -> Option<Time> {
     let (count, time) = line.trim().split_once(['.', ')'])?;
     let time = time.strip_prefix(' ')?.trim();
     let Cell::Number(measured) = cell::read(time, false) else { return None };
     let unit = measured.unit.filter(|unit| unit.dimension == Dimension::Time)?;
-    Some((count.parse().ok()?, time, unit.si(measured.value)))
+    Some(Time { count: count.parse().ok()?, written: time.to_owned(), seconds: unit.si(measured.value) })
 }
 
-/// The text with a row for each line that is a contact, counted from 1, and the time of a clock,
-/// which rises, and its other lines as remarks; `None` if it is none.
-pub(super) fn clocked(text: &str) -> Option<String> {
-    let lines: Vec<(&str, Option<(usize, String, f64)>)> = text.lines().map(|line| (line, contact(line))).collect();
-    let times: Vec<&(usize, String, f64)> = lines.iter().filter_map(|(_, time)| time.as_ref()).collect();
-    let first = lines.iter().position(|(_, time)| time.is_some())?;
-    let in_order = times.iter().enumerate().all(|(n, (count, ..))| *count == n + 1);
-    let rises = times.windows(2).all(|pair| pair[1].2 > pair[0].2);
-    let others = lines.iter().filter(|(_, time)| time.is_none()).all(|(line, _)| silent(line));
-    if times.len() < LIST || !(in_order && rises && others) || text.contains(['\t', ';', '|']) {
-        return None;
-    }
-    let spelt = |(n, (line, time)): (usize, &(&str, Option<(usize, String, f64)>))| match time {
-        // A lone carriage return ends a row, and no line.
-        Some((count, time, _)) if n == first => format!("impact\ttime\r{count}\t{time}"),
-        Some((count, time, _)) => format!("{count}\t{time}"),
-        None if line.trim().is_empty() => String::new(),
-        None => format!("#{}", line.trim_start_matches('#')),
-    };
-    Some(lines.iter().enumerate().map(spelt).collect::<Vec<_>>().join("\n") + "\n")
-}
-
-/// The number of the contact that a line names, and its time by a clock, spelt with a point before
-/// its milliseconds, and in s.
-fn contact(line: &str) -> Option<(usize, String, f64)> {
+/// The contact that a line names by its number, and its time by a clock, written with a point
+/// before its milliseconds.
+fn contact(line: &str) -> Option<Time> {
     let (name, time) = line.trim().rsplit_once(char::is_whitespace)?;
-    let (heading, time) = (Heading::parse(name.trim()), time.replace(',', "."));
+    let (heading, written) = (Heading::parse(name.trim()), time.replace(',', "."));
     let fits = heading.unknown.is_empty() && heading.has(Atom::Impact) && !heading.has(Atom::After) && !heading.turns();
-    let seconds = clock(&time).filter(|_| fits)?;
-    Some((bounce(name.trim())?, time, seconds))
+    let seconds = clock(&written).filter(|_| fits)?;
+    Some(Time { count: bounce(name.trim())?, written, seconds })
 }
 
 #[cfg(test)]

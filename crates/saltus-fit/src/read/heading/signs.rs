@@ -47,7 +47,7 @@ fn parted(text: &str) -> Option<(&str, usize, &str)> {
             let rest = if closed { text[end..].strip_prefix(')')? } else { &text[end..] };
             (!name.is_empty()).then_some((name, number, rest))
         })
-        .last()
+        .next_back()
 }
 
 #[cfg(test)]
