@@ -6,13 +6,13 @@ use crate::certainty::{FAR, ROUNDINGS, SMALL, TINY};
 use crate::state::State;
 use crate::time::resolution;
 
-/// How many durations are remembered.
-const MEMORY: usize = 16;
+/// How many durations are remembered: two of the longest cycles.
+const MEMORY: usize = 2 * LONGEST_CYCLE;
 /// The longest repeating pattern of jumps looked for.
-const LONGEST_CYCLE: usize = 4;
+const LONGEST_CYCLE: usize = 8;
 
-/// How many jumps are the first ones: two of the longest cycles.
-const FIRST: usize = 2 * LONGEST_CYCLE;
+/// How many jumps are the first ones of a cascade: four of a ball between two.
+const FIRST: usize = 8;
 
 /// The states kept: two cycles back from the last jump.
 const STATES: usize = 2 * LONGEST_CYCLE + 1;
@@ -58,7 +58,7 @@ impl<S: State> States<S> {
     #[cold]
     #[inline(never)]
     fn push(&mut self, after: &S) {
-        if self.count <= FIRST {
+        if self.count <= 2 * LONGEST_CYCLE {
             for cycle in 1..=LONGEST_CYCLE.min(self.count) {
                 let way = square_way(after, self.last(cycle - 1));
                 self.first[cycle - 1] = self.first[cycle - 1].max(way);
@@ -131,8 +131,9 @@ impl<S: State> Contraction<S> {
         } else if hidden {
             self.certified(f64::INFINITY, 1.0 - SMALL)
         } else {
-            // Too short to resolve: nothing moves.
-            self.certified(resolution(elapsed), 1.0).map(|ahead| Ahead { cycle: 0, ..ahead })
+            // Too short to resolve: nothing moves. What rounding or a step leaves of ratios of one
+            // is no contraction.
+            self.certified(resolution(elapsed), 1.0 - TINY).map(|ahead| Ahead { cycle: 0, ..ahead })
         }
     }
 

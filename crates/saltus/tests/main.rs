@@ -17,6 +17,7 @@ mod grazing;
 mod many_guards;
 mod many_walls;
 mod missed;
+mod own_times;
 mod plastic;
 mod poles;
 mod promises;

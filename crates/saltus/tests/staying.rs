@@ -4,6 +4,7 @@
 use proptest::prelude::*;
 use saltus::nalgebra::{self, Vector2, Vector3, vector};
 use saltus::{FailedOf, Hybrid, RunOf, Simulation, State, Stop};
+use saltus_cases::cases;
 
 use crate::methods::methods;
 
@@ -150,5 +151,39 @@ fn a_hold_that_a_step_leaps_over_is_doubted() {
         };
         let wrong = (0..100).filter(|&i| silent(i)).count();
         assert!(wrong <= 5, "{wrong} of 100 at {place}, {tolerance}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(cases(128)))]
+
+    /// A guard that is exactly zero from the start of the run, and falls as it may where its
+    /// plateau ends: there it is left.
+    #[test]
+    fn a_plateau_from_the_start_is_left_where_it_ends(
+        method in 0..4_usize, digits in 3.0..12.0_f64, scale in -6.0..6.0_f64, ends in 0.05..0.95_f64, way in 0..5_usize,
+        turns in 1..4_i32,
+    ) {
+        let (end, leaves) = (10_f64.powf(scale), ends * 10_f64.powf(scale));
+        let beyond = move |t: f64, x: f64| match way {
+            0 => -(x - leaves).max(0.0),
+            1 => leaves - x.max(leaves),
+            2 => -(t - leaves).max(0.0),
+            3 => -(x - leaves).max(0.0).powi(2),
+            _ => if x > leaves { -1.0 } else { 0.0 },
+        };
+        let model = Hybrid::new().mode("run", |_t, _x: &f64| 1.0).terminal("run", move |t, x| beyond(t, *x));
+        let simulation = Simulation::of(&model).stepper(methods()[method]).tolerance(10_f64.powf(-digits));
+        let run = simulation.run("run", 0.0, 0.0..f64::from(turns) * end).unwrap();
+        let time = run.end.time.seconds();
+        let tolerance = 10_f64.powf(-digits);
+        let room = match way {
+            // A leap shows by its values, whatever the tolerance.
+            4 => 1e-12,
+            // A square is left as its rate grows beyond the tolerance.
+            3 => lateness(tolerance, 1),
+            _ => 16.0 * tolerance,
+        };
+        prop_assert!((time - leaves).abs() <= room * end, "{time} for {leaves}: {:?}", run.end.stop);
     }
 }

@@ -235,25 +235,32 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let (state, g) =
             if g >= 0.0 { (nearest, g) } else { innermost(&mut guard, &nearest, &at(span), about.read(nearest.len())) };
         (self.memory.slack, self.memory.leapt) = (FEW * g.abs().max(outer.abs()), leaps);
-        let short = self.memory.is_short(root);
-        let resolved = root > SURELY * f64::EPSILON * t.abs();
+        // Of the arc, of which this is the last piece: a stiff flow steps shortly to its crossing.
+        let before = now.since(self.began);
+        let short = self.memory.is_short(before + root);
+        let resolved = before + root > SURELY * f64::EPSILON * t.abs();
         let again = self.memory.spent_as(edge).is_some();
         let hidden =
-            short && resolved && !(by_formula && again) && self.hides(edge, now, root, &at(0.5 * root), &state);
+            short && resolved && before == 0.0 && !(by_formula && again) && self.hides(edge, now, root, &at, &state);
         self.memory.hidden = if hidden { self.memory.hidden + 1 } else { 0 };
         let doubtful = self.memory.last == Some(edge) && (hidden || short && !resolved && !by_formula);
         self.memory.spurious = doubtful && self.rises(edge, now, root, &at);
         Close { span, time, state }
     }
 
-    /// Whether on a short arc from `now` to its `end` after `duration` the guard rises so little
-    /// that its rounding at the end shows: what the state's coordinates are rounded by, or what
-    /// time is, where the guard moves with it.
+    /// Whether on a short arc from `now` to its `end` after `duration` the guard moves away from
+    /// zero by so little that its rounding at the end shows: what the state's coordinates are
+    /// rounded by, or what time is, where the guard moves with it.
     #[cold]
-    fn hides(&mut self, edge: A::Edge, now: Time, duration: f64, middle: &A::State, end: &A::State) -> bool {
-        self.memory.stats.guards += 3;
+    fn hides(&mut self, edge: A::Edge, now: Time, duration: f64, at: impl Fn(f64) -> A::State, end: &A::State) -> bool {
+        self.memory.stats.guards += 5;
         let t = now.after(duration).seconds();
-        let rise = self.guard(edge, now.after(0.5 * duration).seconds(), middle);
+        // One that falls on through its root, and rises again, may be zero in the middle.
+        let away = [0.25, 0.5, 0.75].map(|part| {
+            let s = part * duration;
+            self.guard(edge, now.after(s).seconds(), &at(s)).abs()
+        });
+        let rise = away.into_iter().fold(0.0, f64::max);
         let g = self.guard(edge, t, end);
         let moved = (self.guard(edge, t + duration, end) - g).abs() / duration;
         let by_time = moved * resolution(t);

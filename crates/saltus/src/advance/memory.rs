@@ -54,7 +54,7 @@ pub(crate) struct Memory<E, S> {
     /// last exactly zero: the largest of |xᵢ| at the start of an arc and of |xᵢ'| times its
     /// duration.
     pub(super) largest: Option<S>,
-    /// x' on the last piece of an arc that ends at a crossing.
+    /// x' at the start of an arc that ends at a crossing.
     pub(super) slope: Option<S>,
     pub(super) controller: Controller,
     pub(super) gait: Gait,

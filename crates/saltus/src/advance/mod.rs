@@ -79,6 +79,9 @@ pub(crate) struct Advance<'a, A: Automaton, M> {
     pub(crate) stepper: M,
     pub(crate) options: Options,
     pub(crate) memory: Memory<A::Edge, A::State>,
+    /// When the arc began, and x' there.
+    began: Time,
+    set_out: Option<A::State>,
     tape: Tape,
     held: Held<A>,
     /// An edge that has stayed at its wall on this arc, where all that its guard reads is below
@@ -101,6 +104,8 @@ impl<'a, A: Automaton, M> Advance<'a, A, M> {
             stepper,
             options,
             memory,
+            began: Time::new(0.0),
+            set_out: None,
             tape,
             held,
             held_down: None,
@@ -255,6 +260,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let &Span { now, .. } = clock;
         self.memory.steps_before = self.memory.stats.steps;
         self.memory.kept = None;
+        self.began = now;
         self.sparsity = None;
         let end = match self.automaton.solution(mode, now.seconds(), x) {
             Solution::Sparse(sparsity) => {

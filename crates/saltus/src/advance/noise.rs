@@ -358,19 +358,51 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if falls {
             return Some(at_start);
         }
-        let mut carried = |s: f64| self.carried(mode, edge, step.time(s), &step.at(s), step.size);
-        if carried(limit) != Carried::Down {
+        if let Some(leap) = self.leap_off(edge, step, limit) {
+            return Some(leap);
+        }
+        let mut sinks = |s: f64| self.sinks(mode, edge, step.time(s), &step.at(s), step.size);
+        if !sinks(limit) {
             return None;
         }
         let (mut on, mut off) = (0.0, limit);
-        if carried(on) == Carried::Down {
+        if sinks(on) {
             return (start == Start::Open).then_some(at_start);
         }
         while off - on > resolution(step.time(off)).max(off.next_up() - off) {
             let middle = on.midpoint(off);
-            *(if carried(middle) == Carried::Down { &mut off } else { &mut on }) = middle;
+            *(if sinks(middle) { &mut off } else { &mut on }) = middle;
         }
         Some(Crossing::after(on))
+    }
+
+    /// Where on a step a guard leaps below zero that was exactly zero from its start on: its rate
+    /// is none on either side.
+    fn leap_off(&mut self, edge: A::Edge, step: Step<'_, A::State>, limit: f64) -> Option<Crossing> {
+        let surely_below = |this: &mut Self, s: f64| {
+            let g = this.on(edge, step, s);
+            -g > this.within_tolerance(edge, step.time(s), &step.at(s), g)
+        };
+        if self.on(edge, step, 0.0) != 0.0 || !surely_below(self, limit) {
+            return None;
+        }
+        let (mut on, mut off) = (0.0, limit);
+        while off - on > resolution(step.time(off)).max(off.next_up() - off) {
+            let middle = on.midpoint(off);
+            *(if self.on(edge, step, middle) < 0.0 { &mut off } else { &mut on }) = middle;
+        }
+        (on > AT_START * limit && surely_below(self, off)).then(|| Crossing::after(on))
+    }
+
+    /// Whether the flow carries the guard of `edge` down at `x`, on the way behind as well: ahead
+    /// of a plateau's end a difference to both sides shows what comes.
+    fn sinks(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State, h: f64) -> bool {
+        if self.carried(mode, edge, t, x, h) != Carried::Down {
+            return false;
+        }
+        let (by, slope) = (SMALL * h, self.flow(mode, t, x));
+        self.memory.stats.guards += 2;
+        self.guard(edge, t - by, &x.with(|i| x.get(i) - by * slope.get(i))) != self.guard(edge, t, x)
     }
 
     /// After a step without a crossing to `x`: which edges stay, whose guards are zero to within

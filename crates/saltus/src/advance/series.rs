@@ -88,6 +88,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             if first {
                 let slope = x.with(|i| c[1].get(i) / unit);
                 self.find_staying(mode, Step { now: clock.now, c, scale: unit, size: ahead.step }, &slope);
+                self.set_out = Some(slope);
             }
             let way = Way { mode, now: clock.now, remaining, grace: clock.grace(), first };
             let Some(Believed { h, found, end }) = self.believed(&way, c, unit, ahead.step)? else {

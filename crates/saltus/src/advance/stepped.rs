@@ -63,6 +63,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let which = Some(not_finite(&rate));
             return Err(flow_undefined(self.automaton, mode, clock.now.seconds(), &start, which));
         }
+        if first {
+            self.set_out = Some(rate.clone());
+        }
         // Copies: what others refer to is kept in memory, and waited for at every step.
         let (mut x, mut slope) = (start, rate);
         let unguarded = self.automaton.edges(mode).is_empty();
@@ -196,7 +199,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         remaining: f64,
         observer: &mut impl Observer<A>,
     ) -> ArcEnd<A> {
-        self.memory.slope = c.get(1).map(|c| c.with(|i| c.get(i) / scale));
+        self.memory.slope = self.set_out.take();
         let close = self.close((found.edge, found.crossing), now, |s| found.at(c, scale, s), remaining, false);
         self.memory.before = slope.map(|slope| (close.state.clone(), slope));
         let told = if close.span > 0.0 {
