@@ -58,7 +58,7 @@ impl<S: State> States<S> {
     #[cold]
     #[inline(never)]
     fn push(&mut self, after: &S) {
-        if self.count <= 2 * LONGEST_CYCLE {
+        if self.count <= MEMORY {
             for cycle in 1..=LONGEST_CYCLE.min(self.count) {
                 let way = square_way(after, self.last(cycle - 1));
                 self.first[cycle - 1] = self.first[cycle - 1].max(way);

@@ -365,14 +365,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if !sinks(limit) {
             return None;
         }
-        let (mut on, mut off) = (0.0, limit);
-        if sinks(on) {
+        if sinks(0.0) {
             return (start == Start::Open).then_some(at_start);
         }
-        while off - on > resolution(step.time(off)).max(off.next_up() - off) {
-            let middle = on.midpoint(off);
-            *(if sinks(middle) { &mut off } else { &mut on }) = middle;
-        }
+        let [on, _] = neighbours_of(step, limit, sinks);
         Some(Crossing::after(on))
     }
 
@@ -386,11 +382,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if self.on(edge, step, 0.0) != 0.0 || !surely_below(self, limit) {
             return None;
         }
-        let (mut on, mut off) = (0.0, limit);
-        while off - on > resolution(step.time(off)).max(off.next_up() - off) {
-            let middle = on.midpoint(off);
-            *(if self.on(edge, step, middle) < 0.0 { &mut off } else { &mut on }) = middle;
-        }
+        let [on, off] = neighbours_of(step, limit, |s| self.on(edge, step, s) < 0.0);
         (on > AT_START * limit && surely_below(self, off)).then(|| Crossing::after(on))
     }
 
@@ -432,6 +424,17 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             },
         );
     }
+}
+
+/// Neighbouring times of a step between which something turns that holds at its `limit`, and not
+/// at its start.
+fn neighbours_of<S: State>(step: Step<'_, S>, limit: f64, mut holds: impl FnMut(f64) -> bool) -> [f64; 2] {
+    let (mut on, mut off) = (0.0, limit);
+    while off - on > resolution(step.time(off)).max(off.next_up() - off) {
+        let middle = on.midpoint(off);
+        *(if holds(middle) { &mut off } else { &mut on }) = middle;
+    }
+    [on, off]
 }
 
 /// Where the flow carries a guard.
