@@ -277,3 +277,105 @@ fn a_clock_of_samples_lists_no_contacts() {
     );
     assert!(near(trusted(&text), 0.98));
 }
+
+/// A gate that says in a sentence when it is blocked stands beside the heights of release.
+#[test]
+fn a_gate_stands_beside_the_heights_of_release() {
+    for (down, up) in [
+        ("gate blocked on the way down (ms)", "gate blocked on the way up (ms)"),
+        ("Lichtschranke abwärts (ms)", "Lichtschranke aufwärts (ms)"),
+        ("photogate time down (ms)", "photogate time up (ms)"),
+    ] {
+        let row = |n: usize| {
+            let h = 0.5 + 0.2 * n as f64;
+            let dark = 38.0 / (2.0 * 9.81 * h).sqrt();
+            format!("{},{h:.2},{dark:.3},{:.3}", n + 1, dark / 0.76 * (1.0 + 0.004 * [1.0, -1.0, 0.5][n % 3]))
+        };
+        let text = format!("ball diameter 38 mm\nRun,drop height (m),{down},{up}\n{}", lines((0..6).map(row)));
+        assert!(near(trusted(&text), 0.76), "{text}");
+    }
+}
+
+/// When contacts begin and end, in the words of many languages.
+#[test]
+fn contacts_begin_and_end() {
+    for (name, begins, ends) in [
+        ("contact", "begins", "ends"),
+        ("Kontakt", "beginnt", "endet"),
+        ("contact", "commence", "finit"),
+        ("contacto", "empieza", "termina"),
+        ("contatto", "inizia", "finisce"),
+        ("contato", "começa", "termina"),
+        ("contact", "begint", "eindigt"),
+        ("kontakt", "börjar", "slutar"),
+        ("kontakt", "begynder", "slutter"),
+        ("kontakt", "begynner", "slutter"),
+        ("kontakt", "początek", "koniec"),
+        ("kontakt", "začátek", "konec"),
+        ("temas", "başlangıç", "bitiş"),
+        ("контакт", "начало", "конец"),
+    ] {
+        let times = contacts(0.74, (312.0, 610.0), 7);
+        let row =
+            |(n, t): (usize, &f64)| format!("{};{:.1};{:.1}", n + 1, t + 7.0 * n as f64, t + 7.0 * (n + 1) as f64);
+        let rows = lines(times.iter().enumerate().map(row));
+        let text = format!("Ball dropped on the floor\nno;{name} {begins} (ms);{name} {ends} (ms)\n{rows}");
+        let report = fit(&text);
+        assert!(report.groups().is_empty() && near(report.cor().unwrap().value, 0.74), "{text}{report}");
+    }
+}
+
+/// Labels that span flights, one close behind the other, tell how long these last.
+#[test]
+fn labels_may_span_the_flights() {
+    for (name, count, gap) in [("hop", 5, 0.006), ("Flug", 7, 0.009), ("", 4, 0.004)] {
+        let mut at = 0.83;
+        let label = |n: usize| {
+            let (from, lasts) = (at, 0.62 * 0.81_f64.powi(n as i32));
+            at += lasts + gap;
+            format!(
+                "{from:.6}\t{:.6}\t{}",
+                from + lasts,
+                if name.is_empty() { String::new() } else { format!("{name} {}", n + 1) }
+            )
+        };
+        let text = lines((0..count).map(label).collect::<Vec<_>>());
+        assert!(near(trusted(&text), 0.81), "{text}");
+    }
+}
+
+/// Times that shrink from column to column by one factor are those between contacts, whatever the
+/// columns are called, and so are those of a list of peaks below the name of an instrument; laps
+/// are none.
+#[test]
+fn times_that_shrink_are_those_between_contacts() {
+    let row = |n: usize| {
+        let cell =
+            |k: i32| format!("{:.4}", (0.55 + 0.01 * n as f64) * 0.79_f64.powi(k) * (1.0 + 0.002 * f64::from(k % 2)));
+        (0..5).map(cell).collect::<Vec<_>>().join(";")
+    };
+    let header = |name: &str| (1..6).map(|n| format!("{name} {n} (s)")).collect::<Vec<_>>().join(";");
+    let table = |name: &str| format!("{}\n{}", header(name), lines((0..4).map(row)));
+    assert!(near(trusted(&table("Time")), 0.79));
+    assert_ne!(fit(&table("Lap time")).verdict(), Verdict::Trusted);
+    for title in ["Tektronix TBS1052C CH2", "PicoScope 2204A trigger 50 mV", "Hantek DSO2D10, threshold 0.3 V"] {
+        let times = contacts(0.9, (0.21, 0.47), 9).into_iter().enumerate();
+        let rows = lines(times.map(|(n, t)| format!("{};{t:.5};{}", n + 1, 900 - 60 * n)));
+        assert!(near(trusted(&format!("{title}\n\nPeak;Time (s);Amplitude (mV)\n{rows}")), 0.9), "{title}");
+    }
+}
+
+/// Bodies that were clicked at in the same frames are balls of their own, by the numbers of their
+/// tracks.
+#[test]
+fn tracks_of_one_time_are_balls_of_their_own() {
+    let row = |(track, n, h): (usize, usize, f64)| {
+        format!("{n}\t{track}\t{}\t{}\t{:.0}\t1.0\t1.0\t200\n", n + 1, 100 + 300 * track, 900.0 - 700.0 * h)
+    };
+    let films = [(1, ball(|_| 0.83).film(60.0, 2.4)), (2, ball(|_| 0.66).film(60.0, 2.4))];
+    let rows = films.iter().flat_map(|(track, film)| film.iter().enumerate().map(|(n, s)| row((*track, n, s.1))));
+    let text = format!("\tTrack n°\tSlice n°\tX\tY\tDistance\tVelocity\tPixel Value\n{}", rows.collect::<String>());
+    let report = fit(&text);
+    let cors: Vec<f64> = report.groups().iter().map(|g| g.report.cor().unwrap().value).collect();
+    assert!(matches!(cors.as_slice(), [a, b] if near(*a, 0.83) && near(*b, 0.66)), "{report}");
+}

@@ -13,6 +13,7 @@ mod written;
 
 // Reading: tables that people handed in, layouts, words, files.
 mod abroad;
+mod against;
 mod around;
 mod batches;
 mod candidates;

@@ -257,3 +257,54 @@ fn lists_within_a_list_are_repeats() {
     let cors: Vec<f64> = report.groups().iter().map(|group| group.report.cor().unwrap().value).collect();
     assert!(cors.len() == 2 && (cors[0] - 0.86).abs() < 0.01 && (cors[1] - 0.57).abs() < 0.01, "{report}");
 }
+
+/// The drops of a ball are within it, each a record with its list.
+#[test]
+fn drops_within_balls_are_those_of_the_balls() {
+    let balls = |names: [&str; 2], key: &str| {
+        let drop = |(e, n): (f64, usize)| {
+            let high =
+                |k: i32| format!("{:.0}", 1500.0 * e.powi(2 * k) * (1.0 + 0.004 * ((n + k as usize) as f64).sin()));
+            let tops = (1..5).map(high).collect::<Vec<_>>().join(", ");
+            format!("{{\"id\": {n}, \"release\": 1500, \"apexes\": [{tops}]}}")
+        };
+        let ball = |(name, e): (&str, f64)| {
+            let drops = (1..4).map(|n| drop((e, n))).collect::<Vec<_>>().join(", ");
+            format!("{{\"name\": \"{name}\", \"drops\": [{drops}]}}")
+        };
+        let all = [ball((names[0], 0.86)), ball((names[1], 0.71))].join(", ");
+        format!("{{\"experiment\": \"bounce\", \"unit\": \"mm\", \"{key}\": [{all}]}}")
+    };
+    for (names, key) in [(["zorb 31 mm", "marble (old)"], "balls"), (["oak", "felt"], "surfaces")] {
+        let report = fit(&balls(names, key));
+        let found: Vec<(&str, f64)> =
+            report.groups().iter().map(|g| (g.name.as_str(), g.report.cor().unwrap().value)).collect();
+        let near = |found: &(&str, f64), name: &str, e: f64| found.0 == name && (found.1 - e).abs() < 0.01;
+        let whole = matches!(found.as_slice(), [a, b] if near(a, names[0], 0.86) && near(b, names[1], 0.71));
+        assert!(whole, "{found:?} {report}");
+    }
+}
+
+/// What a console prints of a frame has a count before each row, cells where nothing was read, and
+/// what it sums up below.
+#[test]
+fn a_printed_frame_may_lack_readings() {
+    let row = |n: usize| {
+        let h = 0.6 + 0.3 * (n / 2) as f64;
+        let high = |k: i32| h * 0.77_f64.powi(2 * k) * (1.0 + 0.003 * (n as f64).cos());
+        let second = if n % 3 == 1 { "  NaN".to_owned() } else { format!("{:.3}", high(2)) };
+        format!("{n}    {h:.2}      {:.3}      {second}\n", high(1))
+    };
+    let rows: String = (0..8).map(row).collect();
+    for (asked, below) in [
+        ("", ""),
+        (">>> df\n", ">>> df.mean()\ndrop_m       1.05\nbounce1_m    0.62\n"),
+        (
+            "In [3]: df\nOut[3]:\n",
+            "In [4]: df.describe()\n        drop_m  bounce1_m  bounce2_m\nmean  1.05   0.62   0.37\nstd   0.33   0.20   0.12\n",
+        ),
+    ] {
+        let text = format!("{asked}   drop_m  bounce1_m  bounce2_m\n{rows}{below}");
+        assert!((trusted(&text) - 0.77).abs() < 0.01, "{text}");
+    }
+}

@@ -146,3 +146,37 @@ fn time_in_air_is_no_inch() {
     let heights: String = (0..5).map(|n| format!("{n},{:.2}\n", 50.0 * 0.64f64.powi(n))).collect();
     assert!((trusted(&format!("Bounce,Height in\n{heights}")) - 0.8).abs() < 3e-3);
 }
+
+/// A height of release in feet and inches, or in metres and centimetres, is that of both parts.
+#[test]
+fn a_height_of_release_may_have_two_parts() {
+    for (said, metres) in [
+        ("Ball dropped from 5 ft 7 in", 67.0 * 0.0254),
+        ("The ball was dropped from a height of 5 feet 7 inches.", 67.0 * 0.0254),
+        ("dropped from 5 feet and 7 inches", 67.0 * 0.0254),
+        ("Drop height: 5'7\"", 67.0 * 0.0254),
+        ("Ball dropped from 5' 7\" onto oak", 67.0 * 0.0254),
+        ("ball dropped from 67 1/2 in", 67.5 * 0.0254),
+        ("dropped from 1 m 45 cm", 1.45),
+        ("dropped from 1.45 m", 1.45),
+    ] {
+        let row = |n: usize| format!("{},{:.2}\n", n + 1, 100.0 * metres * 0.5476 * (1.0 + 0.004 * (n as f64).sin()));
+        let text =
+            format!("\"{}\"\n\nno,rebound (cm)\n{}", said.replace('"', "\"\""), (0..6).map(row).collect::<String>());
+        assert!((trusted(&text) - 0.74).abs() < 0.005, "{text}");
+    }
+}
+
+/// What a record refers its heights to is no reference that was looked up.
+#[test]
+fn what_heights_refer_to_is_no_prediction() {
+    for said in ["\"reference\": \"bottom of ball, floor = 0\"", "\"Referenz\": \"Boden\""] {
+        let text = format!("{{{said}, \"bounce\": [0, 1, 2, 3, 4], \"height_cm\": [{}]}}", series(0.8).join(", "));
+        assert!((trusted(&text) - 0.8).abs() < 2e-3, "{text}");
+    }
+    let text = format!(
+        "{{\"reference\": \"values of the book\", \"bounce\": [0, 1, 2, 3, 4], \"height_cm\": [{}]}}",
+        series(0.8).join(", ")
+    );
+    assert_ne!(fit(&text).verdict(), Verdict::Trusted);
+}

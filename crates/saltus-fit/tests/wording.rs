@@ -207,3 +207,127 @@ fn units_are_words_of_every_language() {
         assert!(near(fit(&text).cor().unwrap().value, 0.8, 0.005), "{unit}");
     }
 }
+
+/// A remark that its row does not count takes it out, in the words of many languages.
+#[test]
+fn rows_that_do_not_count_are_left_out() {
+    for said in [
+        "hit the net, do not use",
+        "nicht werten, Netz berührt",
+        "zählt nicht",
+        "a touché le filet, ne pas compter",
+        "tocó la red, no contar",
+        "toccata la rete, non contare",
+        "tocou na rede, não contar",
+        "net geraakt, niet meetellen",
+        "telt niet",
+        "nuddade nätet, räkna ej",
+        "ramte nettet, tæller ikke",
+        "traff nettet, teller ikke",
+        "dotknęła siatki, nie liczyć",
+        "trefil síť, nepočítat",
+        "ağa değdi, sayma",
+        "задел сетку, не считать",
+    ] {
+        let row = |n: usize| {
+            let h = 80.0 + 20.0 * (n / 2) as f64;
+            let (high, note) = if n == 4 { (0.3 * h, said) } else { (h * 0.5625 * (1.0 + off(n)), "") };
+            format!("{h:.0};{high:.1};\"{note}\"\n")
+        };
+        let text = format!("drop height (cm);rebound height (cm);remark\n{}", (0..8).map(row).collect::<String>());
+        assert!(near(trusted(&text), 0.75, 0.01), "{text}");
+    }
+}
+
+/// Drops that a sign counts, `#1`, count no bounces, whatever the release is called; and a test is
+/// called before a colon what it may be.
+#[test]
+fn names_of_drops_and_tests_count_nothing() {
+    for (drop, start) in [("Drop", "Start"), ("Drop", "Release"), ("Throw", "Start"), ("Trial", "h0")] {
+        let row = |n: usize| {
+            let high = |k: i32| 64.0 * 0.77_f64.powi(2 * k) * (1.0 + off(n + k as usize));
+            format!("#{}\t64\t{:.1}\t{:.1}\t{:.1}\n", n + 1, high(1), high(2), high(3))
+        };
+        let rows = (0..5).map(row).collect::<String>();
+        let text = format!("Rubber ball, all in inches\n\n{drop}\t{start}\tBounce 1\tBounce 2\tBounce 3\n{rows}");
+        assert!(near(trusted(&text), 0.77, 0.01), "{text}");
+    }
+    for title in
+        ["SQUASH BALL TEST (WSF method): dropped from 254 cm on concrete", "Ball test (XYZ): drop height 254 cm"]
+    {
+        let row = |n: usize| format!("{}\t{:.1}\n", n + 1, 254.0 * 0.29 * (1.0 + off(n)));
+        let text = format!("{title}\n\nNo.\tRebound [cm]\n{}", (0..9).map(row).collect::<String>());
+        assert!(near(trusted(&text), 0.29_f64.sqrt(), 0.01), "{text}");
+    }
+}
+
+/// What is to be taken off all readings is, and what is of one end of the ball off those that are
+/// read there, by the size that is stated.
+#[test]
+fn a_stated_correction_is_taken_off() {
+    let table = |said: &str, header: &str, off_drop: f64, off_rebound: f64| {
+        let row = |n: usize| {
+            let h = 100.0 + 25.0 * n as f64;
+            format!("{};{:.1};{:.1}\n", n + 1, h + off_drop, h * 0.64 * (1.0 + off(n)) + off_rebound)
+        };
+        format!("{said}\n\n{header}\n{}", (0..6).map(row).collect::<String>())
+    };
+    for said in [
+        "NB: the ball bounces on a bench whose surface is at the 6.5 cm mark. Readings NOT corrected.",
+        "The ruler reads 6.5 cm at the floor",
+        "Subtract 6.5 cm from all heights",
+        "Von allen Höhen sind 6,5 cm abzuziehen",
+        "soustraire 6,5 cm de toutes les hauteurs",
+        "restar 6,5 cm a todas las alturas",
+        "sottrarre 6,5 cm da tutte le altezze",
+        "subtrair 6,5 cm de todas as alturas",
+        "6,5 cm aftrekken van alle hoogten",
+    ] {
+        let text = table(said, "drop;drop height (cm);rebound height (cm)", 6.5, 6.5);
+        assert!(near(trusted(&text), 0.8, 0.01), "{text}");
+    }
+    for (said, header) in [
+        (
+            "Drop: measured to the BOTTOM of the ball.\nRebound: measured to the TOP of the ball (diameter 6.6 cm). Not corrected.",
+            "drop;drop bottom (cm);rebound top of ball (cm)",
+        ),
+        (
+            "Drop height to the underside of the ball; rebound height to the top of the ball; ball diameter 66 mm",
+            "drop;drop height (cm);rebound height (cm)",
+        ),
+    ] {
+        let text = table(said, header, 0.0, 6.6);
+        assert!(near(trusted(&text), 0.8, 0.01), "{text}");
+    }
+    // How large the ball is, nobody says.
+    let said = "Drop height to the underside of the ball; rebound height to the top of the ball";
+    let text = table(said, "drop;drop height (cm);rebound height (cm)", 0.0, 6.6);
+    assert_ne!(fit(&text).verdict(), saltus_fit::Verdict::Trusted, "{text}");
+}
+
+/// The flight between the first contacts, whatever joins their numbers.
+#[test]
+fn numbers_of_contacts_are_joined_in_many_languages() {
+    for name in [
+        "time between 1st and 2nd bounce (s)",
+        "Zeit zwischen 1. und 2. Aufprall (s)",
+        "temps entre le 1er et le 2e rebond (s)",
+        "tiempo entre el 1º y el 2º rebote (s)",
+        "tempo tra il 1º e il 2º rimbalzo (s)",
+        "tempo entre o 1º e o 2º ressalto (s)",
+        "tijd tussen 1e en 2e stuit (s)",
+        "tid mellan 1:a och 2:a studsen (s)",
+        "tid mellem 1. og 2. hop (s)",
+        "czas między 1. i 2. odbiciem (s)",
+        "čas mezi 1. a 2. odrazem (s)",
+        "1. ve 2. sekme arasındaki süre (s)",
+        "время между 1-м и 2-м ударом (с)",
+    ] {
+        let row = |n: usize| {
+            let h = 60.0 + 20.0 * (n / 2) as f64;
+            format!("{};{h:.0};{:.3}\n", n + 1, 2.0 * 0.74 * (2.0 * h / 981.0).sqrt() * (1.0 + 0.3 * off(n)))
+        };
+        let text = format!("no;drop height (cm);{name}\n{}", (0..8).map(row).collect::<String>());
+        assert!(near(trusted(&text), 0.74, 0.01), "{text}");
+    }
+}

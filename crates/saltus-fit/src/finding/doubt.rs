@@ -23,7 +23,8 @@ words! {
         Clock = "clock",
         /// Rows are in another order than that of bounces.
         Order = "order",
-        /// The ball, or the floor, was another from some reading on.
+        /// The ball, or the floor, was another from some reading on, or readings are means over
+        /// several.
         Changed = "changed",
         /// Whoever read them is not sure of them.
         Unsure = "unsure",
@@ -104,6 +105,20 @@ pub enum Doubt {
         drop: String,
         /// The column of the rebounds.
         rebound: String,
+    },
+    /// Speeds before bounces are not those of a fall from the heights of release.
+    Fall {
+        /// The column of the heights of release, or what states one.
+        drop: String,
+        /// The column of the speeds.
+        speed: String,
+    },
+    /// Two balls, floors or heights of release have the same readings to the last digit.
+    Copied {
+        /// One of the two.
+        one: String,
+        /// The one before it.
+        other: String,
     },
     /// Rows are taken for the bounces of one drop, one after the other, and in one trial of them
     /// the heights rise.

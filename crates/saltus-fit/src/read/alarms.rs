@@ -7,18 +7,20 @@ use std::sync::OnceLock;
 use serde::Deserialize;
 use serde::de::{IntoDeserializer, value};
 
+use super::against;
 use super::aside::{Part, Why};
-use super::clause::frame_rate;
+use super::clause::{frame_rate, names_ball};
 use super::grid::{Grid, shown};
 use super::heading::Heading;
 use super::listed::Listed;
-use super::phrases::{DENIED, denies};
+use super::phrases::{DENIED, Phrase, denies};
 use super::region::Region;
 use super::said::stem;
 use super::vocabulary::{Atom, ROWS, folded};
 use super::words::{Kind, Word, split, unaddressed};
 use super::{Event, LeftAside, Table, Trial};
 use crate::finding::{Change, Doubt};
+use crate::quantity::Ball;
 
 /// A change, a tab, a phrase in lower case without accents, whose last word may go on where it ends
 /// in `*`.
@@ -95,6 +97,23 @@ fn changes(text: &str) -> Vec<Change> {
         }
     }
     found
+}
+
+/// Whether a text says that numbers are means over balls, or floors, that differ: `mean of all
+/// balls`, `average over a tennis ball and a golf ball`.
+fn pools(text: &str) -> bool {
+    let words = split(&unaddressed(text));
+    let mean = |word: &Word| word.is(Atom::Mean) || word.is(Atom::Median);
+    let Some(from) = words.iter().position(mean) else { return false };
+    // `all the balls`, `all our five balls`, and no `all drops of the ball`.
+    let silent = |word: &&Word| !matches!(word.kind, Kind::Known(atoms) if atoms[0] != Atom::Filler);
+    let all = |at: usize| {
+        let next = words[at + 1..].iter().find(|word| names_ball(word) || !silent(word));
+        Phrase::Differing.is(&folded(&words[at].text)) && next.is_some_and(names_ball)
+    };
+    let mut balls: Vec<Ball> = words[from..].iter().filter_map(|word| Ball::named(&word.text)).collect();
+    balls.dedup();
+    (0..words.len()).any(all) || balls.len() > 1
 }
 
 /// Whether a text tells so much that is not understood that it may change anything. A word in a
@@ -177,6 +196,22 @@ pub(super) fn doubt((n, region): (usize, &Region<'_>), table: &Table, remarks: &
         _ => true,
     };
     let grid = region.view.grid;
+    // What sums up in its own row says nothing of the others.
+    let summed = |line: Option<u64>| {
+        let row = line.map(|line| grid.row_of(line));
+        row.is_some_and(|row| (0..grid.width(row)).any(|n| grid.cell(row, n).parse::<f64>().is_ok()))
+    };
+    let one = table.trials.windows(2).all(|pair| pair[0].group == pair[1].group);
+    let pooled = |remark: &Remark<'_>| one && pools(remark.text) && !summed(remark.line);
+    let beyond = |remark: &Remark<'_>| match () {
+        () if pooled(remark) => Some(Change::Changed),
+        () if against::mixed(region, table, remark.text) => Some(Change::Unsure),
+        () => None,
+    };
+    let by_numbers = |remark: &Remark<'_>| {
+        let text = shown(remark.text.trim());
+        beyond(remark).map(|change| Doubt::Remark { text, line: remark.line, change })
+    };
     let names = grid.tab.into_iter().chain([region.label.as_str(), stem(grid.name)]);
     let name = |text: &str| {
         let count = words(text);
@@ -187,7 +222,8 @@ pub(super) fn doubt((n, region): (usize, &Region<'_>), table: &Table, remarks: &
         };
         Remark::of(text, None).doubt(of_all)
     };
-    remarks.iter().filter(own).find_map(|remark| remark.doubt(heeded)).or_else(|| names.into_iter().find_map(name))
+    let said = remarks.iter().filter(own).find_map(|remark| remark.doubt(heeded).or_else(|| by_numbers(remark)));
+    said.or_else(|| names.into_iter().find_map(name))
 }
 
 /// Leaves groups and settings aside whose names say that they are no readings, where others remain.

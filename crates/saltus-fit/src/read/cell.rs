@@ -298,7 +298,7 @@ fn leading(text: &str, comma: bool) -> Result<Option<(f64, &str)>, Fault> {
 }
 
 /// `1/2` and what follows it.
-fn fraction(text: &str) -> Option<(f64, f64, &str)> {
+pub(super) fn fraction(text: &str) -> Option<(f64, f64, &str)> {
     let (over, rest) = text.split_once('/')?;
     let end = rest.find(|c: char| !c.is_ascii_digit()).unwrap_or(rest.len());
     let (over, under): (f64, f64) = (over.trim().parse().ok()?, rest[..end].parse().ok()?);

@@ -3,9 +3,10 @@
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
+use super::grid::shown;
 use super::written::step;
 use super::{Event, Reading, Table, Trial};
-use crate::finding::{Lines, Named, Repair, Warning};
+use crate::finding::{Doubt, Lines, Named, Repair, Warning};
 
 /// Where balls are dropped from, in metres.
 const USUAL: std::ops::RangeInclusive<f64> = 0.02..=20.0;
@@ -63,6 +64,32 @@ fn copies(table: &mut Table) {
     }
     let mut copied = copies.iter();
     table.trials.retain(|_| !copied.next().copied().unwrap_or(false));
+}
+
+/// The doubt about balls, floors or heights of release whose readings are the same to the last
+/// digit, as those of no two are: those of one were copied.
+pub(super) fn copied(trials: &[Trial]) -> Option<Doubt> {
+    let step = steps(trials);
+    let filmed = |trial: &Trial| trial.readings.iter().any(|r| r.event == Event::Sample);
+    let among = |name: fn(&Trial) -> &str| {
+        let mut order: Vec<&str> = Vec::new();
+        let mut all: HashMap<&str, (Vec<(bool, u64)>, f64)> = HashMap::new();
+        for trial in trials.iter().filter(|trial| !filmed(trial)) {
+            let (read, chance) = all.entry(name(trial)).or_insert_with(|| {
+                order.push(name(trial));
+                Default::default()
+            });
+            read.extend(numbers(trial).map(|(timed, x)| (timed, x.to_bits())));
+            *chance += told(trial, step);
+        }
+        let mut seen: HashMap<&[(bool, u64)], &str> = HashMap::new();
+        order.iter().find_map(|name| {
+            let (read, _) = all.get(name).filter(|(_, chance)| *chance >= CHANCE)?;
+            let of = seen.insert(read, name)?;
+            Some(Doubt::Copied { one: shown(name), other: shown(of) })
+        })
+    };
+    among(|trial| &trial.group).or_else(|| among(|trial| &trial.setting))
 }
 
 /// The readings of a trial beside its release, which is set: heights, and times.

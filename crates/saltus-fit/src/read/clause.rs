@@ -53,8 +53,10 @@ fn turns_away(word: &Word) -> bool {
 pub(super) fn drop(text: &str) -> Option<DropHeight> {
     let text = without_repeat(text);
     let text = &*without_error(&text);
+    // What a ball, or its test, is called before a colon is no part of how it was dropped.
+    let behind = text.split_once(':').filter(|(name, _)| split(name).iter().any(names_ball)).map(|(_, behind)| behind);
     // `our ball (dropped from 1 m)`.
-    clauses(text).chain(bracketed(text)).chain(dashed(text)).find_map(|clause| {
+    clauses(text).chain(bracketed(text)).chain(dashed(text)).chain(behind).find_map(|clause| {
         let plain = |w: &Word| !matches!(w.kind, Kind::Unknown | Kind::Number(_)) && !turns(w);
         if let Some((height, before, after)) = released(clause) {
             // What brackets hold behind it is a remark.

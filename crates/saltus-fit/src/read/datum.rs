@@ -4,7 +4,7 @@
 use super::cell::{self, Cell};
 use super::clause::clauses;
 use super::grid::shown;
-use super::phrases::Phrase;
+use super::phrases::{Phrase, denies};
 use super::units::{Dimension, Unit};
 use super::vocabulary::{Atom, folded};
 use super::words::{Kind, Word, split};
@@ -22,12 +22,20 @@ pub(super) struct Zero {
     unit: Option<Unit>,
     /// It is the size of the ball.
     of_ball: bool,
+    /// The heights that it is to be taken off.
+    pub(super) of: Of,
     /// What states it, and its line.
     said: String,
     pub(super) line: u64,
 }
 
 impl Zero {
+    /// A mark of a scale, by its number.
+    fn at(text: &str, number: &str, unit: Option<Unit>) -> Option<Self> {
+        let (said, line) = (String::new(), 0);
+        Some(Self { text: text.to_owned(), value: value(number)?, unit, of_ball: false, of: Of::All, said, line })
+    }
+
     /// What it is in the unit of a column; `None` where one of the two has no scale.
     pub(super) fn on(&self, column: Option<Unit>) -> Option<f64> {
         match (self.unit, column) {
@@ -52,7 +60,9 @@ impl Datum {
     /// A release that is stated by itself may be of any end of the ball.
     pub(super) fn beside(self, drop: Option<f64>) -> Self {
         match self {
-            Self::Zero(zero) if zero.of_ball && drop.is_some() => Self::Open(zero.said, zero.line),
+            Self::Zero(zero) if zero.of_ball && zero.of != Of::Rebounds && drop.is_some() => {
+                Self::Open(zero.said, zero.line)
+            }
             datum => datum,
         }
     }
@@ -81,34 +91,58 @@ enum End {
 }
 
 /// Which heights a line speaks of.
-#[derive(Clone, Copy, PartialEq)]
-enum Of {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Of {
     All,
     Releases,
     Rebounds,
 }
 
-/// What lines state of the zero of heights, if anything.
-pub(super) fn stated(lines: &[Line<'_>]) -> Option<Datum> {
+/// What lines, and the names of columns, state of the zero of heights, if anything.
+pub(super) fn stated(lines: &[Line<'_>], names: &[Line<'_>]) -> Option<Datum> {
     let all = || lines.iter().flat_map(|&(line, text)| sentences(text).map(move |clause| (line, clause)));
-    let marks = all().filter_map(|(line, clause)| Some(Zero { line, ..mark(clause)? }));
-    let ends: Vec<(End, Of, Line<'_>)> =
-        all().filter_map(|(line, clause)| end(clause).map(|(end, of)| (end, of, (line, clause)))).collect();
+    let marks = all().filter_map(|(line, clause)| Some(Zero { line, ..mark(clause).or_else(|| off(clause))? }));
+    let mut ends: Vec<(End, Of, Line<'_>)> = lines.iter().flat_map(|line| ends(*line, false)).collect();
+    ends.extend(names.iter().flat_map(|name| self::ends(*name, true)));
     let Some(&(first, _, (line, clause))) = ends.iter().find(|(end, ..)| *end != End::Bottom) else {
         return marks.map(Datum::Zero).next();
     };
-    let says = |of: Of| ends.iter().any(|(_, own, _)| *own == of);
-    let whole = says(Of::All) || says(Of::Releases) && says(Of::Rebounds);
+    let every = |of: Of, end: End| {
+        let mut found = ends.iter().filter(|(_, own, _)| *own == of).peekable();
+        found.peek().is_some() && found.all(|(own, ..)| *own == end)
+    };
     let alike = ends.iter().all(|(end, ..)| *end == first);
-    let size = all().find_map(|(_, clause)| diameter(clause)).filter(|_| alike && whole);
+    let says = |of: Of| ends.iter().any(|(_, own, _)| *own == of);
+    let of = match () {
+        () if alike && (says(Of::All) || says(Of::Releases) && says(Of::Rebounds)) => Some(Of::All),
+        () if says(Of::All) => None,
+        // Those of the lower end are right as they stand.
+        () if every(Of::Releases, End::Bottom) && every(Of::Rebounds, first) => Some(Of::Rebounds),
+        () if every(Of::Rebounds, End::Bottom) && every(Of::Releases, first) => Some(Of::Releases),
+        () => None,
+    };
     let part = if first == End::Top { 1.0 } else { 0.5 };
-    Some(match size {
-        Some((text, value, unit)) => {
+    Some(match of.zip(all().find_map(|(_, clause)| diameter(clause))) {
+        Some((of, (text, value, unit))) => {
             let said = shown(clause);
-            Datum::Zero(Zero { text, value: part * value, unit: Some(unit), of_ball: true, said, line })
+            Datum::Zero(Zero { text, value: part * value, unit: Some(unit), of_ball: true, of, said, line })
         }
         None => Datum::Open(shown(clause), line),
     })
+}
+
+/// The ends of the ball that a line names, and of which heights: what a clause of it says of these
+/// holds for the next ones. The lower end of a column needs no ball.
+fn ends<'a>((line, text): Line<'a>, name: bool) -> Vec<(End, Of, Line<'a>)> {
+    let mut of = Of::All;
+    let mut found = Vec::new();
+    for clause in sentences(text) {
+        let words = split(clause);
+        of = heights(&words).unwrap_or(of);
+        let bare = || (name && words.iter().any(|word| word.is(Atom::Bottom))).then_some(End::Bottom);
+        found.extend(end(&words).or_else(bare).map(|end| (end, of, (line, clause))));
+    }
+    found
 }
 
 /// The clauses of a line, and what its brackets hold.
@@ -137,30 +171,55 @@ fn value(number: &str) -> Option<f64> {
     }
 }
 
-/// `floor at y = 0 px`, `the floor is at the 12 cm mark of the tape`.
+/// `floor at y = 0 px`, `the floor is at the 12 cm mark of the tape`, `a plate whose surface reads
+/// 4 cm`, `the tape reads 12 cm at the floor`.
 fn mark(clause: &str) -> Option<Zero> {
+    // What is said of the word before it stands by itself.
+    let relative = |(at, word): (usize, &str)| Phrase::Whose.is(&folded(word)).then_some(at + word.len());
+    let starts = std::iter::once(0).chain(clause.match_indices(' ').map(|(at, _)| at + 1));
+    let words = starts.map(|at| (at, clause[at..].split(' ').next().unwrap_or_default()));
+    let (said, clause) = words.filter_map(relative).last().map_or(("", clause), |at| clause.split_at(at));
+    // What a ball bounces on is a floor, whatever it is called.
+    let met = split(said).iter().any(|word| word.is(Atom::Impact) || word.is(Atom::Rebound));
+    let is_floor = |word: &Word| word.is(Atom::Floor) || met && word.is(Atom::Group);
     let (before, number, unit, after) = measured(clause)?;
     let (words, behind) = (split(before), split(after));
-    let floor = words.iter().position(|word| word.is(Atom::Floor))?;
     let silent = |word: &Word| matches!(word.kind, Kind::Known([Atom::Filler, ..]) | Kind::Letter);
-    let place = |word: &Word| silent(word) || word.is(Atom::Position) || at(word);
-    let said = words[floor + 1..].iter().any(at) || before.trim_end().ends_with('=');
+    let reads = |word: &Word| Phrase::Reads.is(&folded(&word.text));
+    let place = |word: &Word| silent(word) || word.is(Atom::Position) || at(word) || reads(word);
     let length = unit.is_none_or(|unit| unit.dimension == Dimension::Length);
     // A bare number is a place on an axis.
     let named = unit.is_some() || before.trim_end().ends_with('=');
-    let whole = words[..floor].iter().all(silent)
-        && words[floor + 1..].iter().all(place)
-        && behind.iter().all(|word| place(word) || matches!(word.kind, Kind::Unknown));
-    let text = format!("{number} {}", &clause[before.len() + number.len()..clause.len() - after.len()].trim());
-    let zero = Zero {
-        text: text.trim().to_owned(),
-        value: value(number)?,
-        unit,
-        of_ball: false,
-        said: String::new(),
-        line: 0,
+    let of_floor = |floor: usize| {
+        let said = words[floor + 1..].iter().any(|word| at(word) || reads(word)) || before.trim_end().ends_with('=');
+        said && words[..floor].iter().all(silent)
+            && words[floor + 1..].iter().all(place)
+            && behind.iter().all(|word| place(word) || matches!(word.kind, Kind::Unknown))
     };
-    (said && length && named && whole).then_some(zero)
+    let at_floor = |floor: usize| {
+        words.iter().any(reads)
+            && behind[..floor].iter().any(at)
+            && behind.iter().enumerate().all(|(n, word)| n == floor || place(word))
+    };
+    let floor = |words: &[Word]| words.iter().position(is_floor);
+    let whole = floor(&words).map_or_else(|| floor(&behind).is_some_and(at_floor), of_floor);
+    let text = format!("{number} {}", &clause[before.len() + number.len()..clause.len() - after.len()].trim());
+    (length && named && whole).then(|| Zero::at(text.trim(), number, unit))?
+}
+
+/// `subtract 4 cm from every reading`: what is to be taken off all heights, and was not.
+fn off(clause: &str) -> Option<Zero> {
+    let (before, number, unit, after) = measured(clause)?;
+    let unit = unit.filter(|unit| unit.dimension == Dimension::Length && !unit.unscaled())?;
+    let words: Vec<Word> = split(before).into_iter().chain(split(after)).collect();
+    let spelt = format!(" {} {} ", folded(before), folded(after)).replace([',', '.', ':'], " ");
+    let tells = |phrase: &&str| spelt.contains(&format!(" {phrase} ")) || !phrase.is_ascii() && spelt.contains(*phrase);
+    let of = |word: &Word, phrase: Phrase| phrase.is(&folded(&word.text));
+    let all = |word: &Word| of(word, Phrase::Differing) || of(word, Phrase::Value) || word.is(Atom::Height);
+    let denied = words.iter().any(|word| denies(&folded(&word.text)));
+    let fits = Phrase::Subtract.all().iter().any(tells) && words.iter().any(all) && !denied;
+    let text = clause[before.len()..clause.len() - after.len()].trim();
+    fits.then(|| Zero::at(text, number, Some(unit)))?
 }
 
 fn at(word: &Word) -> bool {
@@ -178,10 +237,8 @@ fn diameter(clause: &str) -> Option<(String, f64, Unit)> {
     (says(Phrase::Diameter) || says(Phrase::Radius)).then_some((text, times * value(number)?, unit))
 }
 
-/// The end of the ball that a clause says heights are read at, `measured to the top of the ball`,
-/// and which heights.
-fn end(clause: &str) -> Option<(End, Of)> {
-    let words = split(clause);
+/// The end of the ball that a clause says heights are read at, `measured to the top of the ball`.
+fn end(words: &[Word]) -> Option<End> {
     let ball = |word: &Word| (word.is(Atom::Group) || word.is(Atom::Label)) && !word.is(Atom::Floor);
     let silent = |word: &Word| word.is(Atom::Filler) && !word.is(Atom::Bottom);
     let of = |word: &Word| match &*folded(&word.text) {
@@ -204,14 +261,19 @@ fn end(clause: &str) -> Option<(End, Of)> {
             .iter()
             .any(|atom| word.is(*atom) && !ball(word))
     };
-    let (fell, rose) =
-        (words.iter().any(|w| w.is(Atom::Release)), words.iter().any(|w| w.is(Atom::Rebound) && !w.is(Atom::Top)));
-    let of = match (fell, rose) {
-        (true, false) => Of::Releases,
-        (false, true) => Of::Rebounds,
-        _ => Of::All,
-    };
-    found.filter(|_| words.iter().any(read)).map(|end| (end, of))
+    found.filter(|_| words.iter().any(read))
+}
+
+/// Which heights a clause speaks of, where it tells.
+fn heights(words: &[Word]) -> Option<Of> {
+    let fell = words.iter().any(|word| word.is(Atom::Release));
+    let rose = words.iter().any(|word| word.is(Atom::Rebound) && !word.is(Atom::Top));
+    match (fell, rose) {
+        (true, false) => Some(Of::Releases),
+        (false, true) => Some(Of::Rebounds),
+        (true, true) => Some(Of::All),
+        (false, false) => None,
+    }
 }
 
 #[cfg(test)]
@@ -236,19 +298,27 @@ mod tests {
             ("dropped onto the floor from 100 cm", None),
             ("sensor 1.65 m above the floor", None),
             ("height at the top of the ball's flight, diameter 24 cm", None),
+            ("the ball bounces on a plate whose surface is at the 4.0 cm mark", Some(4.0)),
+            ("The tape reads 12 cm at the floor", Some(12.0)),
+            ("subtract 4 cm from every reading", Some(4.0)),
+            ("von allen Höhen 4 cm abziehen", Some(4.0)),
+            ("4 cm were subtracted from every reading", None),
         ] {
-            let found = match stated(&[(1, text)]) {
+            let found = match stated(&[(1, text)], &[]) {
                 Some(Datum::Zero(zero)) => zero.on(cm),
                 _ => None,
             };
             assert_eq!(found, zero, "{text}");
         }
+        let text = "drop height to the bottom of the ball; rebound height to the top of the ball; diameter 6 cm";
+        let parted = stated(&[(1, text)], &[]).and_then(|datum| datum.zero());
+        assert!(parted.is_some_and(|zero| zero.of == Of::Rebounds && zero.on(cm) == Some(6.0)));
         for text in [
             "heights are to the top of the ball",
             "drop height to the top of the ball, diameter 6 cm",
-            "drop height to the bottom of the ball; rebound height to the top of the ball; diameter 6 cm",
+            "drop height to the bottom of the ball; rebound height to the top of the ball",
         ] {
-            assert!(matches!(stated(&[(1, text)]), Some(Datum::Open(..))), "{text}");
+            assert!(matches!(stated(&[(1, text)], &[]), Some(Datum::Open(..))), "{text}");
         }
     }
 }

@@ -1,8 +1,6 @@
 //! From the bytes of a file to a table: what kind of file, which tables in it, their trials
 //! together.
 
-use saltus_bounce::units::Quantity;
-
 use super::alarms;
 use super::aside::{LeftAside, Part as Kind, Why};
 use super::clause;
@@ -23,10 +21,9 @@ use super::text::{self, text};
 use super::title::{self, Stated};
 use super::vocabulary::{Atom, folded};
 use super::workbook;
-use super::{Event, Metadata, ReadOptions, Reading, Table, assemble, pool, said, sports};
+use super::{Event, Metadata, ReadOptions, Reading, Table, against, assemble, check, pool, said, sports};
 use crate::error::TableError;
 use crate::finding::Note;
-use crate::quantity::Ball;
 use crate::statistics::FILMED;
 
 /// A track that moves less than this part of what the liveliest does is not the ball.
@@ -175,8 +172,8 @@ fn joined_up<'a>(
     }
     named(&regions, &titles, &mut parts);
     let still = if tracks { leave_still(&mut parts) } else { Vec::new() };
-    if tracks && at_once(&parts) {
-        told_apart(&mut parts);
+    if tracks && pool::at_once(&parts) {
+        pool::told_apart(&mut parts, true);
     }
     let mut table = pool::join(grid.name, parts)?;
     table.left_aside.extend(aside);
@@ -212,7 +209,7 @@ fn named(regions: &[Region<'_>], titles: &[Stated], parts: &mut [(String, Table)
     }
     // Tracks of one film are named by what moves.
     if regions.iter().all(|region| !region.chosen) {
-        told_apart(parts);
+        pool::told_apart(parts, false);
     }
     for (n, (label, _)) in parts.iter_mut().enumerate().filter(|(_, (label, _))| label.is_empty()) {
         *label = format!("run {}", n + 1);
@@ -242,11 +239,12 @@ fn bounces(region: &mut Region<'_>, options: &ReadOptions, metadata: Metadata) -
     let doubts = [
         said::unsaid(region, &columns, options),
         said::mixed_units(region, &columns),
+        against::no_fall(region, &columns),
         said::of_another_motion(region, &columns),
         said::rival(region, &columns, options),
-        said::of_two_ends(&columns),
+        against::of_two_ends(region, &columns),
         said::oblique(&columns),
-        said::repeated(region, &columns),
+        against::repeated(region, &columns),
     ];
     let frame_rate = metadata.frame_rate.or(any).filter(|rate| *rate <= FILMED);
     let mut table = assemble::table(region, &mut columns, rows, options, Metadata { frame_rate, ..metadata })?;
@@ -254,7 +252,7 @@ fn bounces(region: &mut Region<'_>, options: &ReadOptions, metadata: Metadata) -
     table.metadata.averaged = averaged;
     table.metadata.ratios = columns.of_ratios();
     table.metadata.speeds = columns.of_speeds();
-    table.doubts.extend(doubts.into_iter().flatten().chain(columns.doubts));
+    table.doubts.extend(doubts.into_iter().flatten().chain(columns.doubts).chain(check::copied(&table.trials)));
     Ok(table)
 }
 
@@ -285,17 +283,6 @@ fn lacking(grid: &Grid<'_>, options: &ReadOptions, metadata: Metadata) -> Result
         return joined_up(grid, vec![region], false, options, metadata);
     }
     Err(region.error("no column holds heights or times").help("name one, such as 'height_cm' or 'time_s'"))
-}
-
-/// Whether some tracks were followed at the same time: they are of several bodies.
-fn at_once(parts: &[(String, Table)]) -> bool {
-    let span = |(_, table): &(String, Table)| {
-        let times = || table.trials.iter().flat_map(|t| &t.readings).filter_map(|r| r.time);
-        (times().fold(f64::INFINITY, f64::min), times().fold(f64::NEG_INFINITY, f64::max))
-    };
-    let mut spans: Vec<(f64, f64)> = parts.iter().map(span).collect();
-    spans.sort_by(|a, b| a.0.total_cmp(&b.0));
-    spans.windows(2).any(|pair| pair[1].0 < pair[0].1)
 }
 
 /// Takes out the tracks of things that stand still while the ball moves.
@@ -352,12 +339,15 @@ fn sheets(name: &str, parts: Vec<Part>, options: &ReadOptions) -> Result<Table, 
         let tables = used.iter_mut().filter(|(_, _, table)| !matches!(table, Ok(Err(_))));
         tables.for_each(|(_, part, table)| *table = sheet(name, part, options, Some(drop)));
     }
-    for (label, _, table) in used {
+    for (label, part, table) in used {
         let drawn = options.sheet.is_none() && of_chart(&label) && found.iter().any(|(other, _)| !of_chart(other));
         match table {
             Ok(Ok(_)) | Err(_) if drawn => aside.push((label, Why::Elsewhere)),
             Err(error) => return Err(error),
-            Ok(Ok(table)) => found.push((label, table)),
+            Ok(Ok(mut table)) => {
+                pool::within(&part.within, &mut table.trials);
+                found.push((label, table));
+            }
             Ok(Err(problem)) => {
                 aside.push((label, Why::NoTable));
                 first = first.or(Some(problem));
@@ -382,7 +372,7 @@ fn sheets(name: &str, parts: Vec<Part>, options: &ReadOptions) -> Result<Table, 
     aside.extend(computed.into_iter().map(|(label, _)| (label, Why::Computed)));
     let ratios = pool::measured(&mut found, |(_, table)| table);
     aside.extend(ratios.into_iter().map(|(label, _)| (label, Why::Derived)));
-    let drops = told_apart(&mut found);
+    let drops = pool::told_apart(&mut found, false);
     let read = found.iter().map(|(label, _)| label.clone()).collect();
     let mut table = pool::join(name, found)?;
     table.notes.insert(0, Note::Sheets { sheets: read, drops }.into());
@@ -407,35 +397,6 @@ fn stated_in_notes(sheets: &[(String, Part, Sheet)]) -> Option<f64> {
         [one] => Some(*one),
         _ => None,
     }
-}
-
-/// What the names of sheets tell: heights of release, trials, or balls and surfaces; says whether
-/// they are heights.
-fn told_apart(found: &mut [(String, Table)]) -> bool {
-    let several = found.len() > 1;
-    let mut drops = false;
-    for (label, table) in found.iter_mut().filter(|(label, _)| !label.is_empty()) {
-        let drop = drop_height(label, table);
-        drops |= drop;
-        let heading = Heading::parse(label);
-        let trial = heading.unknown.is_empty()
-            && [Atom::Trial, Atom::Repeat, Atom::Time, Atom::Release].iter().any(|atom| heading.has(*atom));
-        let group = several && !drop && (!trial || !heading.labels().is_empty());
-        let name = if heading.labels().is_empty() { label.clone() } else { heading.labels() };
-        for trial in table.trials.iter_mut().filter(|_| several) {
-            trial.setting = joined(label, &trial.setting);
-            if group {
-                trial.group = joined(&name, &trial.group);
-                trial.ball = trial.ball.or(Ball::named(&name));
-            }
-        }
-    }
-    drops
-}
-
-/// Two parts of a name, of which either may be missing.
-fn joined(one: &str, other: &str) -> String {
-    [one, other].iter().filter(|part| !part.is_empty()).copied().collect::<Vec<_>>().join(", ")
 }
 
 /// What was read of one sheet: a table; the reason why it is none; or an error in one that is.
@@ -484,16 +445,4 @@ fn sheet(name: &str, part: &Part, options: &ReadOptions, noted: Option<f64>) -> 
 fn stem(name: &str) -> &str {
     let file = name.trim().rsplit('/').next().unwrap_or_default();
     file.rsplit_once('.').map_or(file, |(stem, _)| stem)
-}
-
-/// A sheet named `80 cm` holds drops from there.
-fn drop_height(label: &str, table: &mut Table) -> bool {
-    let Some(height) = Quantity::Length.parse(label).ok().filter(|h| *h > 0.0) else { return false };
-    for trial in &mut table.trials {
-        let line = trial.readings.first().map_or(1, |r| r.line);
-        if trial.readings.iter().all(|r| r.event == Event::Contact || r.event == Event::Apex) {
-            trial.readings.insert(0, Reading { height: Some(height), ..Reading::new(Event::Release, 0, line) });
-        }
-    }
-    true
 }

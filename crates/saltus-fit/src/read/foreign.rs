@@ -276,7 +276,7 @@ impl Page {
                     lines.push(text);
                     let text = lines.join("\n");
                     let name = format!("table {}", self.parts.len() + 1);
-                    self.parts.push(Part { name, aside: None, content: Content::Cells(text) });
+                    self.parts.push(Part::new(name, None, Content::Cells(text)));
                 }
             }
             "script" | "style" => self.script = false,

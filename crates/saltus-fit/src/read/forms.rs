@@ -2,6 +2,7 @@
 //! and of `MediaWiki`, lines that differ in their numbers only. Each becomes cells parted by tabs,
 //! and a line stays a line.
 
+mod aloft;
 mod blocks;
 mod counted;
 mod laps;
@@ -9,9 +10,11 @@ mod latex;
 mod noted;
 mod numbered;
 mod parts;
+mod points;
 mod printed;
 mod sentences;
 mod spans;
+mod touching;
 mod values;
 mod wiki;
 
@@ -52,6 +55,9 @@ pub(super) fn table(text: &str) -> Option<String> {
         printed::scripted,
         noted::noted,
         spans::table,
+        aloft::table,
+        touching::table,
+        points::table,
         titled,
         listed,
         headed,

@@ -14,8 +14,9 @@ use super::cell::{self, Cell};
 use super::heading::{Heading, Meaning};
 use super::judged;
 use super::limits::{self, CELLS, MANY};
-use super::sheet::{Content, Part};
+use super::sheet::{Content, Part, joined};
 use super::units::{Dimension, Unit};
+use super::vocabulary::Atom;
 
 /// A value, its members in the order in which they stand.
 enum Node {
@@ -190,7 +191,7 @@ fn gathered(name: &str, node: &Node, above: &str, found: &mut Vec<Part>) {
     let mut push = |rows: Option<String>| {
         let Some(rows) = rows else { return };
         let name = if name.is_empty() { format!("table {}", found.len() + 1) } else { name.to_owned() };
-        found.push(Part { name, aside: None, content: Content::Cells(format!("{above}{rows}")) });
+        found.push(Part::new(name, None, Content::Cells(format!("{above}{rows}"))));
     };
     if let Some(records) = node.records() {
         return push(rows(&records));
@@ -223,7 +224,7 @@ fn gathered(name: &str, node: &Node, above: &str, found: &mut Vec<Part>) {
     let Node::List(list) = node else { return };
     if let Some(rows) = nested(name, list) {
         let name = if name.is_empty() { format!("table {}", found.len() + 1) } else { name.to_owned() };
-        found.push(Part { name, aside: None, content: Content::Cells(format!("{above}{rows}")) });
+        found.push(Part::new(name, None, Content::Cells(format!("{above}{rows}"))));
         return;
     }
     for (n, member) in list.iter().enumerate() {
@@ -242,7 +243,14 @@ fn gathered(name: &str, node: &Node, above: &str, found: &mut Vec<Part>) {
             (name, cell) if letter(&named) => format!("{name} {cell}"),
             (_, cell) => cell.to_owned(),
         });
-        tables(&called.unwrap_or_else(|| format!("trial {}", n + 1)), member, above, found);
+        let from = found.len();
+        tables(called.as_deref().unwrap_or(&format!("trial {}", n + 1)), member, above, found);
+        // What is called otherwise is within it: the drops of a ball.
+        let counts = |name: &String| Heading::parse(name).labels().is_empty() && Heading::parse(name).has(Atom::Trial);
+        let Some(of) = called.filter(|name| !counts(name)) else { continue };
+        for part in found[from..].iter_mut().filter(|part| part.name != of) {
+            part.within = joined(&of, &part.within);
+        }
     }
 }
 

@@ -12,7 +12,7 @@ use super::named::event;
 use super::phrases::Phrase;
 use super::region::Region;
 use super::vocabulary::{Atom, ROWS, folded, footnotes};
-use super::words::split;
+use super::words::{Word, split};
 
 /// Whether a name and the cell beside it say that what they stand in does not count: `discarded:
 /// true`, `valid: no`.
@@ -24,7 +24,8 @@ pub(super) fn withdraws(name: &str, cell: &str) -> bool {
 /// Whether a remark says that its row does not count: `discarded`, `not used`.
 fn voids(cell: &str) -> bool {
     let words = split(cell);
-    let denied = |n: usize| words[..n].iter().any(|word| Phrase::Not.is(&word.text.to_lowercase()));
+    let not = |word: &Word| Phrase::Not.is(&word.text.to_lowercase());
+    let denied = |n: usize| words[..n].iter().any(not) || words.get(n + 1).is_some_and(not);
     words.iter().enumerate().any(|(n, word)| word.is(Atom::Void) && !denied(n) || word.is(Atom::Counts) && denied(n))
 }
 

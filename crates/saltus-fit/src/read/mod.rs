@@ -1,5 +1,6 @@
 //! Tables of measured bounces: releases, contacts and apexes, by trial, in SI units.
 
+mod against;
 mod alarms;
 mod answers;
 mod aside;

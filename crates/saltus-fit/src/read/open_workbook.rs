@@ -125,11 +125,7 @@ impl Book {
                         rows.remark(remark.trim())?;
                     }
                     self.left = rows.left;
-                    self.parts.push(Part {
-                        name,
-                        aside: hidden.then_some(Why::Hidden),
-                        content: Content::Cells(rows.text),
-                    });
+                    self.parts.push(Part::new(name, hidden.then_some(Why::Hidden), Content::Cells(rows.text)));
                 }
             }
             _ => {}

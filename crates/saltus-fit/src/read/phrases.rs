@@ -114,10 +114,18 @@ pub(super) enum Phrase {
     Angle,
     /// There is none of what follows.
     Nothing,
+    /// Before what is not one kind, but several.
+    Differing,
+    /// Begins what is said of the word before it.
+    Whose,
+    /// A number is to be taken off readings.
+    Subtract,
+    /// What a scale shows follows.
+    Reads,
 }
 
 impl Phrase {
-    const ALL: [(&'static str, Self); 53] = [
+    const ALL: [(&'static str, Self); 57] = [
         ("missing", Self::Missing),
         ("about", Self::About),
         ("half", Self::Half),
@@ -171,6 +179,10 @@ impl Phrase {
         ("lengths", Self::Lengths),
         ("angle", Self::Angle),
         ("nothing", Self::Nothing),
+        ("differing", Self::Differing),
+        ("whose", Self::Whose),
+        ("subtract", Self::Subtract),
+        ("reads", Self::Reads),
     ];
 
     /// The phrases of this kind, in the order of the file.

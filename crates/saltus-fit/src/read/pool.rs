@@ -2,15 +2,73 @@
 
 use std::collections::HashMap;
 
+use saltus_bounce::units::Quantity;
+
 use super::aside::LeftAside;
 use super::grid::shown;
 use super::heading::Heading;
-use super::vocabulary::{MISSPELT, slip};
+use super::sheet::joined;
+use super::vocabulary::{Atom, MISSPELT, slip};
 use super::written::{rounds_to, step};
-use super::{Event, Metadata, Table, Trial};
+use super::{Event, Metadata, Reading, Table, Trial};
 use crate::error::TableError;
 use crate::finding::{Doubt, Note, Parts, Remark, Warning};
 use crate::quantity::{Ball, STANDARD_GRAVITY};
+
+/// Whether some tracks were followed at the same time: they are of several bodies.
+pub(super) fn at_once(parts: &[(String, Table)]) -> bool {
+    let span = |(_, table): &(String, Table)| {
+        let times = || table.trials.iter().flat_map(|t| &t.readings).filter_map(|r| r.time);
+        (times().fold(f64::INFINITY, f64::min), times().fold(f64::NEG_INFINITY, f64::max))
+    };
+    let mut spans: Vec<(f64, f64)> = parts.iter().map(span).collect();
+    spans.sort_by(|a, b| a.0.total_cmp(&b.0));
+    spans.windows(2).any(|pair| pair[1].0 < pair[0].1)
+}
+
+/// What the names of sheets tell: heights of release, trials, or balls and surfaces; says whether
+/// they are heights. Those of `bodies` are balls, whatever they count.
+pub(super) fn told_apart(found: &mut [(String, Table)], bodies: bool) -> bool {
+    let several = found.len() > 1;
+    let mut drops = false;
+    for (label, table) in found.iter_mut().filter(|(label, _)| !label.is_empty()) {
+        let drop = drop_height(label, table);
+        drops |= drop;
+        let heading = Heading::parse(label);
+        let trial = heading.unknown.is_empty()
+            && [Atom::Trial, Atom::Repeat, Atom::Time, Atom::Release].iter().any(|atom| heading.has(*atom));
+        let group = several && !drop && (bodies || !trial || !heading.labels().is_empty());
+        let name = if heading.labels().is_empty() { label.clone() } else { heading.labels() };
+        for trial in table.trials.iter_mut().filter(|_| several) {
+            trial.setting = joined(label, &trial.setting);
+            if group {
+                trial.group = joined(&name, &trial.group);
+                trial.ball = trial.ball.or(Ball::named(&name));
+            }
+        }
+    }
+    drops
+}
+
+/// Tells trials apart by what encloses their table.
+pub(super) fn within(name: &str, trials: &mut [Trial]) {
+    for trial in trials {
+        trial.group = joined(name, &trial.group);
+        trial.ball = trial.ball.or(Ball::named(name));
+    }
+}
+
+/// A sheet named `80 cm` holds drops from there.
+fn drop_height(label: &str, table: &mut Table) -> bool {
+    let Some(height) = Quantity::Length.parse(label).ok().filter(|h| *h > 0.0) else { return false };
+    for trial in &mut table.trials {
+        let line = trial.readings.first().map_or(1, |r| r.line);
+        if trial.readings.iter().all(|r| r.event == Event::Contact || r.event == Event::Apex) {
+            trial.readings.insert(0, Reading { height: Some(height), ..Reading::new(Event::Release, 0, line) });
+        }
+    }
+    true
+}
 
 /// Tells files apart whose names are of different balls or surfaces, and recordings from readings
 /// of bounces: they are no one experiment.

@@ -11,7 +11,7 @@ use super::grid::shown;
 use super::heading::{At, DropHeight, Heading, Role, Value, What, is_sign};
 use super::phrases::{DENIED, Phrase, denies};
 use super::region::Region;
-use super::units::{Dimension, Scale};
+use super::units::{Dimension, Scale, Unit};
 use super::vocabulary::{Atom, ROWS, folded, misspelt};
 use super::words::{ARTICLE, Kind, Word, has_word, split};
 use crate::error::TableError;
@@ -194,23 +194,42 @@ pub(super) fn unsaid(region: &Region<'_>, columns: &Columns, options: &ReadOptio
     (!bounces).then(|| Doubt::Unsaid { column: shown(&column.heading.text) })
 }
 
-/// Whether all that is read are times between which less and less passes, by one factor: nothing
-/// else happens so than contacts of a ball, but what is called otherwise, laps and jumps.
+/// Whether all that is read are times between which less and less passes, by one factor, or such
+/// times themselves side by side: nothing else happens so than contacts of a ball, but what is
+/// called otherwise, laps and jumps.
 pub(super) fn shrinks(region: &Region<'_>, columns: &Columns) -> bool {
-    let mut read = columns.values().filter(|(_, _, v)| v.role != Role::Error);
+    let read = columns.values().filter(|(_, _, v)| v.role != Role::Error).map(|(n, _, v)| (n, v));
+    let read: Vec<(usize, &Value)> = read.collect();
     let number = |row: usize, n: usize| columns.written(region, row, n).map(|(number, _)| number);
     let rises = |n: usize| region.rows.windows(2).all(|pair| number(pair[0], n) < number(pair[1], n));
-    let clock = read.all(|(n, _, v)| v.what == What::Time && v.at == At::Row && rises(n));
+    let clock = read.iter().all(|(n, v)| v.what == What::Time && v.at == At::Row && rises(*n));
+    let beside = |v: &Value| matches!(v.what, What::Time | What::Interval) && matches!(v.at, At::Nth(_));
+    // One row may fall so by chance.
+    let beside = read.iter().all(|(_, v)| beside(v)) && read.len() > ALIKE && region.rows.len() >= ALIKE;
     let other = |w: &Word| w.is(Atom::Motion) || w.is(Atom::Loose) && (w.is(Atom::Impact) || w.is(Atom::Rebound));
     let mut names = columns.columns.iter().filter(|c| c.kind != Of::Aside).flat_map(|c| split(&c.heading.text));
-    clock && !names.any(|word| other(&word)) && repeats(region, columns, LASTING)
+    let shrink = || repeats(region, columns, LASTING) || beside && repeats_across(region, columns, &read, LASTING);
+    (clock || beside) && !names.any(|word| other(&word)) && shrink()
 }
 
-/// Whether every word that stands beside the columns is understood.
+/// Whether every word that stands beside the columns is understood, but for what an instrument is
+/// called: letters with digits, and who made it before them.
 fn understood(region: &Region<'_>) -> bool {
-    let titles = region.aside.iter().map(|aside| aside.name.as_str());
-    let words = titles.chain(region.view.grid.comments().map(|(_, text)| text)).flat_map(split);
-    words.take(ROWS).all(|word| !matches!(word.kind, Kind::Unknown))
+    let model = |word: &Word| word.text.contains(|c: char| c.is_ascii_digit());
+    let known = |words: Vec<Word>| {
+        (0..words.len()).all(|n| {
+            let made = words[n].text.starts_with(char::is_uppercase) && words.get(n + 1).is_some_and(model);
+            let unit = || Unit::parse(&words[n].text).is_some();
+            !matches!(words[n].kind, Kind::Unknown) || model(&words[n]) || made || unit()
+        })
+    };
+    let grid = region.view.grid;
+    let whole = |line: u64| {
+        let row = grid.row_of(line);
+        (0..grid.width(row)).map(|n| grid.cell(row, n)).collect::<Vec<_>>().join(" ")
+    };
+    let titles = region.aside.iter().map(|aside| aside.line.map_or_else(|| aside.name.clone(), whole));
+    titles.chain(grid.comments().map(|(_, text)| text.to_owned())).take(ROWS).all(|text| known(split(&text)))
 }
 
 /// Whether the file is named after a ball, or its sport: `phyphox_golf_3.csv`.
@@ -303,7 +322,7 @@ const KEPT: f64 = 0.04;
 const LASTING: f64 = 0.03;
 
 /// Fewer rows than these fall alike by chance.
-const ALIKE: usize = 3;
+pub(super) const ALIKE: usize = 3;
 
 /// Whether a heading says that its heights are those of a bounce, or no more than that they are
 /// heights: it names nothing else, `height (cm)`, `rebound`, but not `door height`.
@@ -405,51 +424,6 @@ pub(super) fn oblique(columns: &Columns) -> Option<Doubt> {
     let angle = |c: &&Column| split(&c.heading.text).iter().any(|word| Phrase::Angle.is(&folded(&word.text)));
     let column = columns.columns.iter().find(angle).filter(|_| fast)?;
     Some(Doubt::Oblique { column: shown(&column.heading.text) })
-}
-
-/// The doubt whether releases and rebounds are read at the same end of the ball, where one names
-/// its bottom and the other its top.
-pub(super) fn of_two_ends(columns: &Columns) -> Option<Doubt> {
-    let names = |c: &Column, ends: Atom| split(&c.heading.text).iter().any(|word| word.is(ends));
-    let column = |release: bool, ends: Atom| {
-        let read = |v: &Value| v.role == Role::Reading && v.what == What::Height;
-        let mut found =
-            columns.values().filter(|(_, c, v)| read(v) && (v.at == At::Release) == release && names(c, ends));
-        found.next().map(|(_, c, _)| shown(&c.heading.text))
-    };
-    let ends = [(Atom::Bottom, Atom::Top), (Atom::Top, Atom::Bottom)];
-    let (drop, rebound) = ends.iter().find_map(|(one, other)| Some((column(true, *one)?, column(false, *other)?)))?;
-    Some(Doubt::Datum { drop, rebound })
-}
-
-/// The doubt whether the heights that bounces begin at were measured: where each is that of the row
-/// before times one factor, to its last digit, the column repeats the other and is no reading.
-pub(super) fn repeated(region: &Region<'_>, columns: &Columns) -> Option<Doubt> {
-    let column = |release: bool| {
-        let read = |v: &Value| v.role == Role::Reading && v.what == What::Height && v.trial.is_empty();
-        let mut found = columns
-            .values()
-            .filter(|(_, _, v)| read(v) && matches!(v.at, At::Release | At::Row) && (v.at == At::Release) == release);
-        found.next().filter(|_| found.next().is_none())
-    };
-    let ((drop, of_drop, _), (rebound, of_rebound, _)) = (column(true)?, column(false)?);
-    if !of_drop.heading.has(Atom::Before) {
-        return None;
-    }
-    let step = |pair: &[usize]| {
-        let (before, begins) = (columns.written(region, pair[0], rebound)?, columns.written(region, pair[1], drop)?);
-        let falls = columns.written(region, pair[0], drop)?.0 > begins.0;
-        // The factor, and how far the rounding of both may move it.
-        let factor = begins.0 / before.0;
-        (falls && before.0 > before.1).then(|| (factor, begins.1 / before.0 + factor * before.1 / before.0))
-    };
-    let steps: Vec<(f64, f64)> = region.rows.windows(2).map(step).collect::<Option<_>>()?;
-    let (low, high) = steps.iter().fold((f64::NEG_INFINITY, f64::INFINITY), |(low, high), (factor, by)| {
-        (low.max(factor - by), high.min(factor + by))
-    });
-    let other = low > 1.0 || high < 1.0;
-    (steps.len() + 1 >= ALIKE && low <= high && other)
-        .then(|| Doubt::Repeated { column: shown(&of_drop.heading.text), of: shown(&of_rebound.heading.text) })
 }
 
 /// Nobody calls fewer readings than these a mean.

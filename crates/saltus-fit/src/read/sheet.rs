@@ -7,10 +7,23 @@ use super::limits::{self, MANY};
 pub(super) struct Part {
     /// The name of the sheet, or of the file in the archive.
     pub(super) name: String,
+    /// What encloses it and tells it from others: a ball that holds its drops.
+    pub(super) within: String,
     /// Why it is not read unless asked for: the file hides it, or says that it does not count.
     pub(super) aside: Option<Why>,
     /// The sheet's cells, separated by tabs, or the bytes of the file.
     pub(super) content: Content,
+}
+
+impl Part {
+    pub(super) fn new(name: String, aside: Option<Why>, content: Content) -> Self {
+        Self { name, within: String::new(), aside, content }
+    }
+}
+
+/// Two parts of a name, of which either may be missing.
+pub(super) fn joined(one: &str, other: &str) -> String {
+    [one, other].iter().filter(|part| !part.is_empty()).copied().collect::<Vec<_>>().join(", ")
 }
 
 pub(super) enum Content {

@@ -6,7 +6,7 @@ use super::cell::{Cell, spaced};
 use super::clause::{clauses, drop, error, frame_rate, lengths, names_rate, of_clauses};
 use super::datum::{self, Datum};
 use super::grid::{Grid, shown};
-use super::heading::{DropHeight, Heading, What};
+use super::heading::{At, DropHeight, Heading, What};
 use super::phrases::Phrase;
 use super::region::Region;
 use super::sizes::states_length;
@@ -81,11 +81,17 @@ pub(super) fn stated(region: &Region<'_>) -> Stated {
     let said: Vec<(u64, String)> = rows.iter().map(|&row| (region.view.line(row, 0), text(row))).collect();
     let header = region.view.line(region.header_row, 0);
     // The name of one of several columns of heights is of these alone.
-    let high = |name: &&String| Heading::parse(name).value().is_some_and(|value| value.what == What::Height);
-    let of = if region.header.iter().filter(high).count() > 1 { "drop height" } else { "height" };
-    let names: Vec<(u64, String)> = region.header.iter().map(|name| (header, format!("{of} {name}"))).collect();
-    let own = said.iter().chain(&names).map(|(line, text)| (*line, text.as_str()));
-    found.datum = datum::stated(&region.view.grid.comments().take(ROWS).chain(own).collect::<Vec<_>>());
+    let at = |name: &String| Heading::parse(name).value().filter(|v| v.what == What::Height).map(|v| v.at);
+    let several = region.header.iter().filter_map(at).count() > 1;
+    let of = |name: &String| match at(name) {
+        Some(At::Release) if several => "drop height",
+        Some(_) if several => "rebound height",
+        _ => "height",
+    };
+    let names: Vec<(u64, String)> = region.header.iter().map(|name| (header, format!("{} {name}", of(name)))).collect();
+    let [own, names] =
+        [&said, &names].map(|lines| lines.iter().map(|(line, text)| (*line, text.as_str())).collect::<Vec<_>>());
+    found.datum = datum::stated(&region.view.grid.comments().take(ROWS).chain(own).collect::<Vec<_>>(), &names);
     for (row, (line, text)) in rows.into_iter().zip(said) {
         let cells: Vec<&str> = cells(row).collect();
         let (fps, height, sigma) =
@@ -273,13 +279,21 @@ pub(super) fn doubted(region: &Region<'_>, table: &mut Table) {
             by == [Atom::Goal] && stated
         })
     };
+    // What refers to the floor, or to an end of the ball, says where heights begin.
+    let placed = |text: &str| {
+        text.split_once(':').is_some_and(|(name, place)| {
+            let of_place = |word: &Word| word.is(Atom::Floor) || word.is(Atom::Bottom);
+            turned(name) && split(place).iter().any(of_place) && !turns(place)
+        })
+    };
     // In a sentence a word turns nothing by itself: `corrected for parallax`.
     let sentence = |text: &str| {
         let words = split(text);
         let named = text.split_once(':').is_some_and(|(name, _)| turned(name));
         !named && words.len() > TITLE && words.iter().any(|word| matches!(word.kind, Kind::Unknown))
     };
-    let tells = |text: &str| turned(text) && (!felt || wanted(text)) && !aimed(text) && !sentence(text);
+    let tells =
+        |text: &str| turned(text) && (!felt || wanted(text)) && !aimed(text) && !placed(text) && !sentence(text);
     let titles = |aside: &&LeftAside| match row(aside) {
         Some([name, value]) => tells(&name) || turned(&value) && wanted(&value),
         None => tells(&aside.name),

@@ -70,7 +70,7 @@ fn archive(name: &str, bytes: &[u8]) -> Result<Vec<Part>, TableError> {
         let read = file.take(left + 1).read_to_end(&mut content);
         let size = read.map_err(|e| broken(name, "archive", &e.to_string()))? as u64;
         left = left.checked_sub(size).ok_or_else(|| broken(name, "archive", &too_large()))?;
-        parts.push(Part { name: entry.clone(), aside: None, content: Content::Bytes(content) });
+        parts.push(Part::new(entry.clone(), None, Content::Bytes(content)));
     }
     if parts.is_empty() {
         return Err(TableError::new(name, "the archive holds no table: no file in it ends in .csv, .tsv or .txt")
@@ -137,7 +137,7 @@ fn xlsx(bytes: &[u8], remarks: &[(usize, String)]) -> Result<Vec<Part>, String> 
         }
         remarks.iter().filter(|(sheet, _)| *sheet == number).try_for_each(|(_, text)| rows.remark(text))?;
         left = rows.left;
-        parts.push(Part { name, aside: hidden.then_some(Why::Hidden), content: Content::Cells(rows.text) });
+        parts.push(Part::new(name, hidden.then_some(Why::Hidden), Content::Cells(rows.text)));
     }
     Ok(parts)
 }
@@ -156,7 +156,7 @@ fn xls(bytes: &[u8]) -> Result<Vec<Part>, String> {
             rows.put((top.saturating_add(position.0), first.saturating_add(position.1)), &shown(value))?;
         }
         left = rows.left;
-        parts.push(Part { name, aside: hidden.then_some(Why::Hidden), content: Content::Cells(rows.text) });
+        parts.push(Part::new(name, hidden.then_some(Why::Hidden), Content::Cells(rows.text)));
     }
     Ok(parts)
 }

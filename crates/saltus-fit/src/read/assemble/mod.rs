@@ -9,6 +9,7 @@ use std::collections::{HashMap, HashSet};
 
 use super::aside::{LeftAside, Part, Why};
 use super::columns::{Column, Columns, Kind};
+use super::datum::Of;
 use super::grid::shown;
 use super::heading::{At, Role, What};
 use super::lasting;
@@ -175,6 +176,7 @@ fn floor(region: &Region<'_>, columns: &mut Columns, rows: &Rows, options: &Read
             let heights: Vec<(usize, f64)> = columns
                 .values()
                 .filter(|(_, _, v)| v.what == What::Height && !matches!(v.role, Role::Error | Role::Lost))
+                .filter(|(_, _, v)| zero.of == Of::All || (zero.of == Of::Releases) == (v.at == At::Release))
                 .filter_map(|(n, c, _)| Some((n, zero.on(c.unit)?)))
                 .collect();
             let Some(&(column, at)) = heights.first() else { return Ok(()) };

@@ -142,7 +142,9 @@ impl Columns {
         let up =
             |c: &Column| (c.heading.has(Atom::After) || c.says(Phrase::UpTo) || c.says(Phrase::Outwards)) && !down(c);
         let Some((before, after)) = self.pair(|c| gate(c) && down(c), |c| gate(c) && up(c)) else { return };
-        let read = self.values().filter(|(n, _, v)| !v.or_trial || !region.counts(*n)).count();
+        // Where each drop began says nothing more.
+        let drop = |v: &Value| (v.what, v.at) == (What::Height, At::Release);
+        let read = self.values().filter(|(n, _, v)| !drop(v) && (!v.or_trial || !region.counts(*n))).count();
         if self.columns[before].unit != self.columns[after].unit || read > 2 {
             return;
         }

@@ -13,6 +13,7 @@ use crate::read::phrases::Phrase;
 use crate::read::region::Region;
 use crate::read::units::{Dimension, Scale, Unit};
 use crate::read::vocabulary::{Atom, folded};
+use crate::read::words::split;
 
 /// Whether times and speeds of the same rows are those of one way, to within [`WORKED_OUT`].
 fn one_way(region: &Region<'_>, time: usize, speed: usize) -> bool {
@@ -414,7 +415,7 @@ impl Columns {
     }
 
     /// A column without a unit whose cells all name bounces, some of them in words: `bounce 1 to
-    /// bounce 2`.
+    /// bounce 2`. Below the name of drops a sign and a number, `#1`, count these.
     pub(super) fn naming(&mut self, region: &Region<'_>) {
         if self.number().is_some() {
             return;
@@ -425,8 +426,11 @@ impl Columns {
                 cells().any(|cell| cell.contains(char::is_alphabetic) && cell.contains(|c: char| c.is_ascii_digit()));
             c.unit.is_none() && words && cells().count() > 1 && cells().all(|cell| bounce(cell).is_some())
         });
-        if let Some(index) = found.map(|(n, _, _)| n) {
-            self.columns[index].kind = Kind::Number { sure: true };
+        let met = |cell: &str| split(cell).iter().any(|word| word.is(Atom::Impact) || word.is(Atom::Rebound));
+        if let Some((index, column, _)) = found {
+            let drops =
+                column.heading.has(Atom::Release) && !region.rows.iter().any(|&row| met(region.cell(row, index)));
+            self.columns[index].kind = Kind::Number { sure: !drops };
         }
     }
 

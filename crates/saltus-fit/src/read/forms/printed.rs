@@ -8,7 +8,7 @@ use super::values::{LIST, listed_values};
 
 /// A frame of data as a console prints it, with tabs between its cells: below a line of names rows
 /// that are counted from 0 or 1 and hold a word for each name. A cell that single blanks part from
-/// the one before it is one all the same. `None` where there is none, or two blanks part all cells.
+/// the one before it is one all the same. `None` where there is none.
 pub(in crate::read) fn indexed(text: &str) -> Option<String> {
     let lines: Vec<&str> = text.lines().collect();
     let words = |n: usize| lines[n].split_whitespace().collect::<Vec<_>>();
@@ -28,10 +28,6 @@ pub(in crate::read) fn indexed(text: &str) -> Option<String> {
     let (head, from) = (0..lines.len()).find_map(|n| Some((n, begins(&n)?)))?;
     let width = words(head).len() + 1;
     let rows = (0..lines.len() - head - 1).take_while(|row| counted(head + 1 + row, from + row, width)).count();
-    let wide = |n: usize| lines[n].trim().split("  ").filter(|cell| !cell.trim().is_empty()).count();
-    if wide(head) + 1 == width && (head + 1..=head + rows).all(|n| wide(n) == width) {
-        return None;
-    }
     // What else is printed is no row of it; what a console is asked, and what it answers to more
     // that it is asked below, says nothing of it.
     let prompts = [">", "In ["];
@@ -256,7 +252,6 @@ mod tests {
         let expected = "#>>> df\n\tball\tdrop_m\tfloor\n0\tgolf\t1.0\tstone\n1\tgolf\t1.5\tstone\n2\tgolf\t2.0\tstone\n\n#[3 rows]\n";
         assert_eq!(indexed(text).as_deref(), Some(expected));
         for text in [
-            "   ball  drop_m  floor\n0  golf     1.0  stone\n1  golf     1.5  stone\n2  golf     2.0  stone\n",
             "ball drop_m floor\n0 golf 1.0 stone\n1 old golf 1.5 stone\n2 golf 2.0 stone\n",
             "a b\n5 1.0 2.0\n7 1.5 2.0\n9 2.0 2.0\n",
             "the ball fell\n0 1 2\n",

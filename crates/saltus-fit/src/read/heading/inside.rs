@@ -3,7 +3,7 @@
 
 use std::borrow::Cow;
 
-use super::super::cell::{Cell, read};
+use super::super::cell::{Cell, fraction, read};
 use super::super::phrases::Phrase;
 use super::super::units::{Dimension, Scale, Unit};
 use super::super::vocabulary::{Atom, folded, meanings};
@@ -123,26 +123,53 @@ pub(in crate::read) fn released(text: &str) -> Option<(DropHeight, &str, &str)> 
     // What stands behind a sign of an error is no height.
     let error = |at: usize| text[..at].trim_end().ends_with(['±', '+', '-', '−']);
     text.char_indices().filter(starts).filter(|(at, _)| !error(*at)).find_map(|(at, _)| {
-        let digits =
-            text[at..].find(|c: char| !(c.is_ascii_digit() || c == '.' || c == ',')).unwrap_or(text.len() - at);
-        let value: f64 = text[at..at + digits].replace(',', ".").parse().ok()?;
-        let after = text[at + digits..].trim_start();
-        let end = after.find(|c: char| !c.is_alphabetic() && !matches!(c, '"' | '\'')).unwrap_or(after.len());
-        let unit = Unit::parse(&after[..end])?;
+        let (value, unit, written, end) = length(&text[at..])?;
         let length = unit.dimension == Dimension::Length && matches!(unit.scale, Scale::Si { .. });
         let before = folded(text[..at].trim_end_matches([' ', '=', ':', '(']));
         let word = before.rsplit(|c: char| !c.is_alphanumeric()).next().unwrap_or_default();
         let is = |word: &str, atom: Atom| meanings(word).is_some_and(|atoms| atoms.contains(&atom));
         let counted = value.fract() == 0.0 && value <= COUNTED && is(word, Atom::Trial);
         let from = Phrase::From.is(word);
-        let parts = [&text[..at], &after[end..]];
+        let parts = [&text[..at], &text[at + end..]];
         let word_of_release = |part: &&str| {
             folded(part).split(|c: char| !c.is_alphanumeric()).any(|word| is(word, Atom::Release)) || lets_loose(part)
         };
-        let written = format!("{} {}", &text[at..at + digits], &after[..end]);
         let fits = length && value > 0.0 && !counted && (from || parts.iter().any(word_of_release));
         fits.then_some((DropHeight { text: written, value, unit, sign: 0 }, parts[0], parts[1]))
     })
+}
+
+/// A length at the start of a text: its number, its unit, as it is written, and where it ends.
+type Length = (f64, Unit, String, usize);
+
+/// `1.5 m`, `40 1/2 in`, and with a part in a smaller unit `1 m 20 cm`, `5 feet and 3 inches`.
+fn length(text: &str) -> Option<Length> {
+    let (value, unit, written, end) = part(text)?;
+    let feet = Unit::parse("ft") == Some(unit);
+    let rest = text[end..].trim_start();
+    let joined = rest.split_once(' ').filter(|(word, _)| feet && Phrase::And.is(word));
+    let rest = joined.map_or(rest, |(_, rest)| rest);
+    let smaller = |other: &Unit| other.dimension == unit.dimension && other.si(1.0) < unit.si(1.0);
+    Some(match part(rest).filter(|(_, other, ..)| smaller(other)) {
+        Some((more, other, also, to)) => {
+            let value = value + other.si(more) / unit.si(1.0);
+            (value, unit, format!("{written} {also}"), text.len() - rest.len() + to)
+        }
+        None => (value, unit, written, end),
+    })
+}
+
+/// A number and its unit.
+fn part(text: &str) -> Option<Length> {
+    let digits = text.find(|c: char| !(c.is_ascii_digit() || c == '.' || c == ',')).unwrap_or(text.len());
+    let value: f64 = text[..digits].replace(',', ".").parse().ok()?;
+    let after = text[digits..].trim_start();
+    let (value, after) =
+        fraction(after).map_or((value, after), |(over, under, rest)| (value + over / under, rest.trim_start()));
+    let number = text[..text.len() - after.len()].trim_end();
+    let end = after.find(|c: char| !c.is_alphabetic() && !matches!(c, '"' | '\'')).unwrap_or(after.len());
+    let unit = Unit::parse(&after[..end])?;
+    Some((value, unit, format!("{number} {}", &after[..end]), text.len() - after.len() + end))
 }
 
 /// Takes what hundredths are of out of the words, `% of drop height`; says whether they are of the

@@ -39,6 +39,13 @@ pub(super) fn words(doubt: &Doubt) -> String {
             "'{drop}' and '{rebound}' are in different units, and their numbers are those of a ball if the units are the same: is one of \
              them wrong?"
         ),
+        Doubt::Fall { drop, speed } => format!(
+            "'{speed}' is no speed that a fall from '{drop}' gives: is the unit of one of the two another, or was the ball thrown?"
+        ),
+        Doubt::Copied { one, other } => format!(
+            "the readings of '{one}' are those of '{other}' to the last digit, as those of no two balls, floors or heights are: which of them \
+             were measured? Take the others out"
+        ),
         Doubt::Order { trial } => format!(
             "the rows are taken for bounces one after the other, and the heights of '{trial}' rise along them: if they are, number them in a \
              column 'bounce'"

@@ -1,0 +1,168 @@
+//! What numbers of a table say against one another, and against what is said of them, is doubted:
+//! speeds that no fall gives, balls with the same digits, means over balls that differ, numbers of
+//! two units under one name.
+
+use crate::typed::{fit, trusted};
+use proptest::prelude::*;
+use saltus_cases::cases;
+use saltus_fit::{Doubt, FindingKind, Report, Verdict};
+
+fn doubts(report: &Report) -> Vec<&Doubt> {
+    let of_groups = report.groups().iter().flat_map(|group| group.report.findings());
+    report
+        .findings()
+        .iter()
+        .chain(of_groups)
+        .filter_map(|finding| match &finding.kind {
+            FindingKind::ReadDoubt { doubt } => Some(doubt),
+            _ => None,
+        })
+        .collect()
+}
+
+/// Whether a remark is doubted, and what it says cannot be trusted.
+fn remarked(report: &Report) -> bool {
+    let is = |doubt: &&Doubt| matches!(doubt, Doubt::Remark { .. });
+    report.verdict() != Verdict::Trusted && doubts(report).iter().any(is)
+}
+
+/// Scatter of the drop `n`, a part of its height.
+fn off(n: usize) -> f64 {
+    [0.004, -0.007, 0.001, 0.008, -0.005, 0.0, -0.002][n % 7]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: cases(24), failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// Speeds before a bounce are those of the fall beside them, or stated above; numbers of
+    /// another unit under their name are not.
+    #[test]
+    fn speeds_that_no_fall_gives_are_doubted(e in 0.45f64..0.85, unit in 0usize..4, titled: bool, loses in 0.9f64..1.0) {
+        let (name, per) = [("m/s", 1.0), ("km/h", 3.6), ("ft/s", 3.2808), ("cm/s", 100.0)][unit];
+        let table = |slip: f64| {
+            let row = |n: usize| {
+                let h = if titled { 1.6 } else { 0.7 + 0.2 * n as f64 };
+                let v = loses * (2.0 * 9.81 * h).sqrt() * (1.0 + off(n));
+                let speeds = format!("{:.3},{:.3}\n", v * per * slip, v * e * (1.0 + off(n + 3)) * per);
+                if titled { speeds } else { format!("{h:.2},{speeds}") }
+            };
+            let (above, drop) = if titled { ("Ball dropped from 1.6 m\n", "") } else { ("", "drop height (m),") };
+            let header = format!("{drop}speed before impact ({name}),speed after impact ({name})");
+            format!("{above}{header}\n{}", (0..6).map(row).collect::<String>())
+        };
+        prop_assert!((trusted(&table(1.0)) - e).abs() < 0.02, "{}", table(1.0));
+        for slip in [3.6, 2.237, 0.3048] {
+            let report = fit(&table(slip));
+            let is = doubts(&report).iter().any(|doubt| matches!(doubt, Doubt::Fall { .. }));
+            prop_assert!(is && report.verdict() != Verdict::Trusted, "{}{}", table(slip), report);
+        }
+    }
+
+    /// No two balls, floors or heights of release give the same digits everywhere; the same few
+    /// digits they may.
+    #[test]
+    fn balls_with_the_same_digits_are_doubted(e in 0.6f64..0.85, of in 0usize..3, wide: bool) {
+        let (name, kinds) = [
+            ("ball", ["golf", "marble", "squash"]),
+            ("surface", ["tiles", "carpet", "grass"]),
+            ("Untergrund", ["Beton", "Parkett", "Rasen"]),
+        ][of];
+        let table = |apart: f64, digits: usize| {
+            let row = |ball: usize, n: usize| {
+                let high = |k: i32| {
+                    let e = e - apart * ball as f64;
+                    format!("{:.digits$}", 130.0 * e.powi(2 * k) * (1.0 + off(n + k as usize)))
+                };
+                match wide {
+                    true => format!("{},130,{},{},{}\n", kinds[ball], high(1), high(2), high(3)),
+                    false => format!("{},130,{}\n", kinds[ball], high(1)),
+                }
+            };
+            let header = if wide { "h0 (cm),h1 (cm),h2 (cm),h3 (cm)" } else { "drop (cm),rebound (cm)" };
+            let rows = (0..3).flat_map(|ball| (0..5).map(move |n| (ball, n)));
+            format!("{name},{header}\n{}", rows.map(|(ball, n)| row(ball, n)).collect::<String>())
+        };
+        let copied = |report: &Report| doubts(report).iter().any(|doubt| matches!(doubt, Doubt::Copied { .. }));
+        let report = fit(&table(0.0, 2));
+        prop_assert!(copied(&report) && report.verdict() != Verdict::Trusted, "{}{}", table(0.0, 2), report);
+        prop_assert!(!copied(&fit(&table(0.05, 2))) && !copied(&fit(&table(0.0, 0).replace(",130,", ",130.0,"))) || wide);
+    }
+
+    /// A mean over balls that differ is the COR of none of them; a mean of drops of one ball is.
+    #[test]
+    fn means_over_balls_that_differ_are_doubted(e in 0.5f64..0.85, below: bool) {
+        let row = |n: usize| format!("{},{:.1}\n", 60 + 30 * n, (60.0 + 30.0 * n as f64) * e * e * (1.0 + off(n)));
+        let table = |said: &str| {
+            let rows: String = (0..5).map(row).collect();
+            let table = format!("drop height (cm),rebound height (cm)\n{rows}");
+            let said = said.replace(',', ";");
+            if below { format!("{table}\n{said}\n") } else { format!("{said}\n\n{table}") }
+        };
+        for said in [
+            "Rebounds are averages over all our balls.",
+            "the mean of five different balls",
+            "mean of a tennis ball, a golf ball and a basketball",
+            "Mittelwerte über alle Bälle",
+            "Mittelwert aus verschiedenen Bällen",
+            "moyenne de toutes les balles",
+            "promedio de todas las pelotas",
+            "media di tutte le palline",
+            "média de todas as bolas",
+            "gemiddelde van alle ballen",
+            "medelvärde av alla bollar",
+            "gennemsnit af alle bolde",
+            "średnia ze wszystkich piłek",
+            "průměr všech míčků",
+            "tüm toplar için ortalama",
+            "среднее по всем мячам",
+        ] {
+            let report = fit(&table(said));
+            prop_assert!(remarked(&report), "{}{}", table(said), report);
+        }
+        for said in ["mean of 3 drops each", "Average of all drops of the ball", "Mittelwert aus drei Versuchen"] {
+            prop_assert!((trusted(&table(said)) - e).abs() < 0.02, "{}", table(said));
+        }
+    }
+
+    /// Who is not sure of the unit says so in many ways; and a remark that names another unit than
+    /// the headings is of those whose rebounds are off by what the two differ by.
+    #[test]
+    fn units_that_may_be_mixed_are_doubted(e in 0.7f64..0.85, person in 0usize..3) {
+        let table = |slip: f64, said: &str| {
+            let row = |n: usize| {
+                let by = ["Ida", "Ole", "Kai"][n % 3];
+                let slip = if n % 3 == person { slip } else { 1.0 };
+                format!("{by},180,{:.1}\n", 180.0 * e * e * (1.0 + off(n)) / slip)
+            };
+            format!("Read by,Drop height (cm),Rebound (cm)\n{}\n{said}\n", (0..12).map(row).collect::<String>())
+        };
+        for said in [
+            "Ida may have read the wrong scale.",
+            "Units may be mixed.",
+            "Perhaps one of us used inches.",
+            "Einheiten verwechselt?",
+            "vielleicht Zoll statt cm",
+            "unités mélangées",
+            "peut-être en pouces",
+            "unidades mezcladas",
+            "unità mescolate",
+            "unidades misturadas",
+            "eenheden door elkaar",
+            "blandade enheter",
+            "blandede enheder",
+            "yksiköt sekaisin",
+            "pomieszane jednostki",
+            "popletené jednotky",
+            "birimler karıştı",
+            "единицы перепутаны",
+        ] {
+            let report = fit(&table(2.54, said));
+            prop_assert!(report.verdict() != Verdict::Trusted, "{}{}", table(2.54, said), report);
+            prop_assert!(report.groups().iter().all(|g| g.report.verdict() != Verdict::Trusted), "{}", report);
+        }
+        let said = "One of us worked in inches and the others in cm.";
+        prop_assert!(remarked(&fit(&table(2.54, said))), "{}", table(2.54, said));
+        let said = "Tape: one edge inches and one edge cm.";
+        prop_assert!(!remarked(&fit(&table(1.0, said))), "{}", table(1.0, said));
+    }
+}
