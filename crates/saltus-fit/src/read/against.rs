@@ -32,8 +32,8 @@ fn si(unit: Unit, dimension: Dimension) -> bool {
 /// The doubt about speeds before bounces that the heights of release beside them, or above the
 /// table, do not give.
 pub(super) fn no_fall(region: &Region<'_>, columns: &Columns) -> Option<Doubt> {
-    let number = |row: usize, n: usize, unit: Unit| match region.view.read(row, n) {
-        Cell::Number(m) => Some(m.unit.unwrap_or(unit).si(m.value)),
+    let number = |row: usize, n: usize, unit: Option<Unit>| match region.view.read(row, n) {
+        Cell::Number(m) => Some(m.unit.or(unit)?.si(m.value)),
         _ => None,
     };
     let before = columns
@@ -43,8 +43,9 @@ pub(super) fn no_fall(region: &Region<'_>, columns: &Columns) -> Option<Doubt> {
     let unit = named.unit.filter(|unit| si(*unit, Dimension::Speed))?;
     let released = |c: &Column| c.heading.value().is_some_and(|v| (v.what, v.at) == (What::Height, At::Release));
     let column = columns.columns.iter().enumerate().find_map(|(n, c)| {
-        let unit = c.unit.or(region.units.1).filter(|unit| si(*unit, Dimension::Length))?;
-        (released(c) && c.heading.unknown.is_empty()).then_some((n, unit, &c.heading.text))
+        let unit = c.unit.or(region.units.1);
+        let length = unit.is_none_or(|unit| si(unit, Dimension::Length));
+        (released(c) && c.heading.unknown.is_empty() && length).then_some((n, unit, &c.heading.text))
     });
     let height = |row: usize| match column {
         Some((n, unit, _)) => number(row, n, unit),
@@ -52,7 +53,7 @@ pub(super) fn no_fall(region: &Region<'_>, columns: &Columns) -> Option<Doubt> {
     };
     let part = |&row: &usize| {
         let free = (2.0 * STANDARD_GRAVITY * height(row).filter(|height| *height > 0.0)?).sqrt();
-        Some(number(row, speed, unit)?.abs() / free)
+        Some(number(row, speed, Some(unit))?.abs() / free)
     };
     let mut parts: Vec<f64> = region.rows.iter().filter_map(part).collect();
     let drop = column.map(|(_, _, name)| name).or(region.drop.as_ref().map(|drop| &drop.text))?;

@@ -82,9 +82,13 @@ pub(super) fn copied(trials: &[Trial]) -> Option<Doubt> {
             read.extend(numbers(trial).map(|(timed, x)| (timed, x.to_bits())));
             *chance += told(trial, step);
         }
+        // What all of them share is less likely the more they are.
+        let first = &all.get(order.first()?)?.0;
+        let others = if all.values().all(|(read, _)| read == first) { all.len().saturating_sub(1).max(1) } else { 1 };
         let mut seen: HashMap<&[(bool, u64)], &str> = HashMap::new();
         order.iter().find_map(|name| {
-            let (read, _) = all.get(name).filter(|(_, chance)| *chance >= CHANCE)?;
+            #[allow(clippy::cast_precision_loss)] // balls of a table
+            let (read, _) = all.get(name).filter(|(_, chance)| others as f64 * chance >= CHANCE)?;
             let of = seen.insert(read, name)?;
             Some(Doubt::Copied { one: shown(name), other: shown(of) })
         })

@@ -216,9 +216,14 @@ fn gathered(name: &str, node: &Node, above: &str, found: &mut Vec<Part>) {
     let inner = || node.members().iter().filter(|(_, node)| node.cells().is_none() && node.cell().is_none());
     // The only table within a value is called as that is.
     let only = !name.is_empty() && columns.is_empty() && inner().count() == 1;
+    // Names of what is made alike tell what they hold apart: `"golf": {"drops": [...]}`.
+    let names = |node: &Node| node.members().iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
+    let shape = inner().next().map(|(_, node)| names(node)).filter(|names| !names.is_empty());
+    let alike = inner().count() > 1 && inner().all(|(_, node)| Some(names(node)) == shape);
     for (own, member) in inner() {
-        let of_both = matches!(member, Node::List(list) if nested(own, list).is_some());
+        let (of_both, from) = (matches!(member, Node::List(list) if nested(own, list).is_some()), found.len());
         tables(if only && !of_both { name } else { own }, member, &format!("{above}{stated}"), found);
+        enclosed(&mut found[from..], own, alike);
     }
     // Lists of the same names are trials, or are called by their first words.
     let Node::List(list) = node else { return };
@@ -245,11 +250,17 @@ fn gathered(name: &str, node: &Node, above: &str, found: &mut Vec<Part>) {
         });
         let from = found.len();
         tables(called.as_deref().unwrap_or(&format!("trial {}", n + 1)), member, above, found);
-        // What is called otherwise is within it: the drops of a ball.
-        let counts = |name: &String| Heading::parse(name).labels().is_empty() && Heading::parse(name).has(Atom::Trial);
-        let Some(of) = called.filter(|name| !counts(name)) else { continue };
-        for part in found[from..].iter_mut().filter(|part| part.name != of) {
-            part.within = joined(&of, &part.within);
+        called.iter().for_each(|name| enclosed(&mut found[from..], name, true));
+    }
+}
+
+/// Tables that are called otherwise than what holds them are within it, the drops of a ball, unless
+/// that is `apart` from nothing, or counts trials.
+fn enclosed(parts: &mut [Part], name: &str, apart: bool) {
+    let heading = Heading::parse(name);
+    if apart && !(heading.labels().is_empty() && heading.has(Atom::Trial)) {
+        for part in parts.iter_mut().filter(|part| part.name != name) {
+            part.within = joined(name, &part.within);
         }
     }
 }

@@ -122,10 +122,12 @@ pub(super) enum Phrase {
     Subtract,
     /// What a scale shows follows.
     Reads,
+    /// What an instrument was set to.
+    Tuned,
 }
 
 impl Phrase {
-    const ALL: [(&'static str, Self); 57] = [
+    const ALL: [(&'static str, Self); 58] = [
         ("missing", Self::Missing),
         ("about", Self::About),
         ("half", Self::Half),
@@ -183,6 +185,7 @@ impl Phrase {
         ("whose", Self::Whose),
         ("subtract", Self::Subtract),
         ("reads", Self::Reads),
+        ("tuned", Self::Tuned),
     ];
 
     /// The phrases of this kind, in the order of the file.

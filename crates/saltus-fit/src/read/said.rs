@@ -11,7 +11,7 @@ use super::grid::shown;
 use super::heading::{At, DropHeight, Heading, Role, Value, What, is_sign};
 use super::phrases::{DENIED, Phrase, denies};
 use super::region::Region;
-use super::units::{Dimension, Scale, Unit};
+use super::units::{Dimension, Scale};
 use super::vocabulary::{Atom, ROWS, folded, misspelt};
 use super::words::{ARTICLE, Kind, Word, has_word, split};
 use crate::error::TableError;
@@ -213,14 +213,14 @@ pub(super) fn shrinks(region: &Region<'_>, columns: &Columns) -> bool {
 }
 
 /// Whether every word that stands beside the columns is understood, but for what an instrument is
-/// called: letters with digits, and who made it before them.
+/// called, letters with digits and who made it before them, and set to.
 fn understood(region: &Region<'_>) -> bool {
     let model = |word: &Word| word.text.contains(|c: char| c.is_ascii_digit());
     let known = |words: Vec<Word>| {
         (0..words.len()).all(|n| {
             let made = words[n].text.starts_with(char::is_uppercase) && words.get(n + 1).is_some_and(model);
-            let unit = || Unit::parse(&words[n].text).is_some();
-            !matches!(words[n].kind, Kind::Unknown) || model(&words[n]) || made || unit()
+            let tuned = || Phrase::Tuned.is(&folded(&words[n].text));
+            !matches!(words[n].kind, Kind::Unknown) || model(&words[n]) || made || tuned()
         })
     };
     let grid = region.view.grid;

@@ -199,7 +199,7 @@ impl Unit {
             return Some(Self { dimension: Dimension::Other, scale: Scale::State });
         }
         let other = Quantity::ALL.iter().any(|quantity| quantity.scale(text).or(quantity.scale(symbol)).is_some())
-            || ["n", "w", "k", "db", "mv", "hpa", "fps", "cm^2", "cm2", "m^2", "mm^2"].contains(&symbol);
+            || ["n", "w", "k", "db", "hpa", "fps", "cm^2", "cm2", "m^2", "mm^2"].contains(&symbol);
         other.then_some(Self::OTHER)
     }
 }
