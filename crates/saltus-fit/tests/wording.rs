@@ -292,7 +292,7 @@ fn a_stated_correction_is_taken_off() {
             "drop;drop bottom (cm);rebound top of ball (cm)",
         ),
         (
-            "Drop height to the underside of the ball; rebound height to the top of the ball; ball diameter 66 mm",
+            "Drop height to the underside of the ball. Rebound height to the top of the ball. Ball diameter 66 mm",
             "drop;drop height (cm);rebound height (cm)",
         ),
     ] {
@@ -300,7 +300,7 @@ fn a_stated_correction_is_taken_off() {
         assert!(near(trusted(&text), 0.8, 0.01), "{text}");
     }
     // How large the ball is, nobody says.
-    let said = "Drop height to the underside of the ball; rebound height to the top of the ball";
+    let said = "Drop height to the underside of the ball. Rebound height to the top of the ball";
     let text = table(said, "drop;drop height (cm);rebound height (cm)", 0.0, 6.6);
     assert_ne!(fit(&text).verdict(), saltus_fit::Verdict::Trusted, "{text}");
 }
