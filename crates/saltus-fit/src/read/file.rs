@@ -25,7 +25,7 @@ use super::vocabulary::{Atom, folded};
 use super::workbook;
 use super::{Event, Metadata, ReadOptions, Reading, Table, assemble, pool, said, sports};
 use crate::error::TableError;
-use crate::finding::Note;
+use crate::finding::{Doubt, Note};
 use crate::quantity::Ball;
 use crate::statistics::FILMED;
 
@@ -219,13 +219,19 @@ fn named(regions: &[Region<'_>], titles: &[Stated], parts: &mut [(String, Table)
     }
 }
 
-/// The table of a region: its bounces, or what a sensor felt of them.
+/// The table of a region: its bounces, or what a sensor felt of them, where nothing says that its
+/// readings are of bounces.
 fn one(region: &mut Region<'_>, options: &ReadOptions, metadata: Metadata) -> Result<Table, TableError> {
     let felt = |region: &Region<'_>| sensed::table(region, options, metadata);
     if let Some(table) = sensed::shows(region).then(|| felt(region)).flatten() {
         return Ok(table);
     }
-    bounces(region, options, metadata).or_else(|error| felt(region).ok_or(error))
+    let rows = region.rows.clone();
+    let said = |table: &Table| !table.doubts.iter().any(|doubt| matches!(doubt, Doubt::Unsaid { .. }));
+    match bounces(region, options, metadata) {
+        Ok(table) if said(&table) => Ok(table),
+        other => felt(&Region { rows, ..region.clone() }).map_or(other, Ok),
+    }
 }
 
 /// The table of a region of bounces: its columns by their names, the rows that hold readings, the

@@ -44,6 +44,7 @@ mod sequence;
 mod sheet;
 mod sizes;
 mod sports;
+mod stamps;
 mod stray;
 mod text;
 mod title;
