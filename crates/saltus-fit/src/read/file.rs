@@ -21,6 +21,7 @@ use super::sensed;
 use super::sheet::{Content, Part};
 use super::text::{self, text};
 use super::title::{self, Stated};
+use super::tracks;
 use super::vocabulary::{Atom, folded};
 use super::workbook;
 use super::{Event, Metadata, ReadOptions, Reading, Table, assemble, pool, said, sports};
@@ -28,9 +29,6 @@ use crate::error::TableError;
 use crate::finding::{Doubt, Note};
 use crate::quantity::Ball;
 use crate::statistics::FILMED;
-
-/// A track that moves less than this part of what the liveliest does is not the ball.
-const MOVES: f64 = 0.5;
 
 /// Reads `bytes` into a table that is not yet checked.
 pub(super) fn table(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Table, TableError> {
@@ -174,9 +172,10 @@ fn joined_up<'a>(
         aside.push(LeftAside::new(Kind::Text, name, Why::Derived).at(line));
     }
     named(&regions, &titles, &mut parts);
-    let still = if tracks { leave_still(&mut parts) } else { Vec::new() };
-    if tracks && at_once(&parts) {
+    let still = if tracks { tracks::leave_still(&mut parts) } else { Vec::new() };
+    if tracks && tracks::at_once(&parts) {
         told_apart(&mut parts);
+        tracks::bodies(&mut parts);
     }
     let mut table = pool::join(grid.name, parts)?;
     table.left_aside.extend(aside);
@@ -291,35 +290,6 @@ fn lacking(grid: &Grid<'_>, options: &ReadOptions, metadata: Metadata) -> Result
         return joined_up(grid, vec![region], false, options, metadata);
     }
     Err(region.error("no column holds heights or times").help("name one, such as 'height_cm' or 'time_s'"))
-}
-
-/// Whether some tracks were followed at the same time: they are of several bodies.
-fn at_once(parts: &[(String, Table)]) -> bool {
-    let span = |(_, table): &(String, Table)| {
-        let times = || table.trials.iter().flat_map(|t| &t.readings).filter_map(|r| r.time);
-        (times().fold(f64::INFINITY, f64::min), times().fold(f64::NEG_INFINITY, f64::max))
-    };
-    let mut spans: Vec<(f64, f64)> = parts.iter().map(span).collect();
-    spans.sort_by(|a, b| a.0.total_cmp(&b.0));
-    spans.windows(2).any(|pair| pair[1].0 < pair[0].1)
-}
-
-/// Takes out the tracks of things that stand still while the ball moves.
-fn leave_still(parts: &mut Vec<(String, Table)>) -> Vec<String> {
-    let travel = |table: &Table| {
-        let heights = || table.trials.iter().flat_map(|t| &t.readings).filter_map(|r| r.height);
-        heights().fold(f64::NEG_INFINITY, f64::max) - heights().fold(f64::INFINITY, f64::min)
-    };
-    let most = parts.iter().map(|(_, table)| travel(table)).fold(0.0, f64::max);
-    let mut still = Vec::new();
-    parts.retain(|(label, table)| {
-        let moves = travel(table) >= MOVES * most;
-        if !moves {
-            still.push(label.clone());
-        }
-        moves
-    });
-    still
 }
 
 /// The sheets of a workbook or the files of an archive that hold tables.

@@ -48,6 +48,7 @@ mod stamps;
 mod stray;
 mod text;
 mod title;
+mod tracks;
 mod units;
 mod vocabulary;
 mod words;

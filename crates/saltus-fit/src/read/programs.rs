@@ -386,12 +386,18 @@ fn distinct(regions: &mut [Region<'_>]) {
     }
 }
 
+/// A run, or a body, and what is measured of it: where blanks tell them apart a mark within is of the
+/// name, `Room:Ball: X`.
+fn of_run(cell: &str) -> Option<(&str, &str)> {
+    cell.split_once(": ").or_else(|| cell.split_once(':'))
+}
+
 /// Runs side by side: `Run 1: Time (s)`, `Run 2: Time (s)`; or the same names again, after a blank
 /// column or not.
 fn side_by_side<'a>(region: &Region<'a>) -> Option<Recognised<'a>> {
     let header = &region.header;
     let run = |cell: &str| {
-        let parts = cell.split_once(':').filter(|(_, name)| !name.trim().is_empty());
+        let parts = of_run(cell).filter(|(_, name)| !name.trim().is_empty());
         parts.map_or(String::new(), |(run, _)| run.trim().to_owned())
     };
     let mut runs: Vec<String> = Vec::new();
@@ -405,7 +411,7 @@ fn side_by_side<'a>(region: &Region<'a>) -> Option<Recognised<'a>> {
         Region { label, header: header.collect(), ..region.clone() }
     };
     // `A: drop`, `B: rebound` only count the columns: runs hold the same things.
-    let things: Vec<(&str, &str)> = header.iter().filter_map(|cell| cell.split_once(':')).collect();
+    let things: Vec<(&str, &str)> = header.iter().filter_map(|cell| of_run(cell)).collect();
     let alike = things.iter().enumerate().any(|(n, (run, name))| {
         things[..n].iter().any(|(other, same)| other.trim() != run.trim() && same.trim() == name.trim())
     });
@@ -417,7 +423,7 @@ fn side_by_side<'a>(region: &Region<'a>) -> Option<Recognised<'a>> {
                 own.is_empty() || own == *name
             });
             for cell in &mut region.header {
-                if let Some((_, own)) = cell.split_once(':') {
+                if let Some((_, own)) = of_run(cell) {
                     *cell = own.trim().to_owned();
                 }
             }

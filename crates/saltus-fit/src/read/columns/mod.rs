@@ -179,6 +179,7 @@ impl Columns {
         (fps, any): (Option<f64>, Option<f64>),
     ) -> Result<(), TableError> {
         self.wordy(region);
+        self.stamped(region);
         self.respelt(region);
         self.vertical(region);
         self.infer(region, options)?;

@@ -38,7 +38,8 @@ impl States {
             let cells: Vec<&str> = rows.iter().map(|&row| region.cell(row, column)).collect();
             let first = *cells.first()?;
             let other = *cells.iter().find(|cell| **cell != first)?;
-            let two = !first.is_empty() && !other.is_empty() && cells.iter().all(|cell| *cell == first || *cell == other);
+            let two =
+                !first.is_empty() && !other.is_empty() && cells.iter().all(|cell| *cell == first || *cell == other);
             two.then(|| Self::between(column, &rows, &times, &cells)).filter(|states| states.spans.len() >= PULSES)
         })
     }
@@ -121,7 +122,8 @@ impl States {
 pub(super) fn triggered(region: &Region<'_>, options: &ReadOptions, headings: &[Heading]) -> Option<Series> {
     let (clock, (rows, times)) =
         (0..headings.len()).find_map(|n| Some((n, clock::times(region, options, &headings[n], n)?)))?;
-    let others = || (0..headings.len()).filter(|&n| n != clock && region.numbers(n).next().is_some() && !region.counts(n));
+    let others =
+        || (0..headings.len()).filter(|&n| n != clock && region.numbers(n).next().is_some() && !region.counts(n));
     let column = others().next().filter(|_| others().count() == 1)?;
     if headings[column].has(Atom::Height) || headings[column].has(Atom::Position) {
         return None;

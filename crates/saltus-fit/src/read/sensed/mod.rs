@@ -1,10 +1,11 @@
 //! A table from what a sensor shows that feels the ball hit: a force plate, a load cell, a piezo, a
 //! switch, an accelerometer in the ball. Its pulses are the contacts, where they come ever sooner
-//! as those of a ball do.
+//! as those of a ball do; so are the tops of its flights, where a sensor shows how fast it is.
 
 mod clock;
 mod events;
 mod felt;
+mod speeds;
 
 use super::aside::{LeftAside, Part, Why};
 use super::grid::shown;
@@ -42,8 +43,9 @@ struct Sensor {
 /// in it.
 pub(super) fn table(region: &Region<'_>, options: &ReadOptions, metadata: Metadata) -> Option<Table> {
     let headings: Vec<Heading> = region.header.iter().map(|text| Heading::parse(text)).collect();
-    let filmed = |n: usize| places(&headings[n]) && region.numbers(n).next().is_some();
-    let filmed = (0..headings.len()).any(filmed);
+    let holds = |n: usize, what: What| places(&headings[n], what) && region.numbers(n).next().is_some();
+    let [high, fast] = [What::Height, What::Speed].map(|what| (0..headings.len()).any(|n| holds(n, what)));
+    let filmed = high || fast;
     // Light that a ball blocks is none that it hits.
     let texts = region.aside.iter().map(|aside| aside.name.as_str()).chain([region.view.grid.name]);
     let gate = texts.chain(region.header.iter().map(String::as_str)).any(|text| has_word(text, Phrase::Gate));
@@ -56,7 +58,8 @@ pub(super) fn table(region: &Region<'_>, options: &ReadOptions, metadata: Metada
         let series = [contacts, states.and_then(|states| states.below_a_beam(gravity))];
         let triggered = || events::triggered(region, options, &headings).filter(|_| !gate);
         let of = |series: Series| Some((series.table(region)?.0, series.column));
-        series.into_iter().flatten().find_map(of).or_else(|| of(triggered()?))
+        let logged = series.into_iter().flatten().find_map(of).or_else(|| of(triggered()?));
+        logged.or_else(|| speeds::table(region, options, &headings, metadata.gravity).filter(|_| fast && !high))
     })?;
     let (drop, frame_rate) = (options.drop.or(metadata.drop), None);
     table.metadata = Metadata { drop, frame_rate, intervals: table.metadata.intervals, ..metadata };
@@ -73,12 +76,7 @@ pub(super) fn table(region: &Region<'_>, options: &ReadOptions, metadata: Metada
 /// The contacts in samples, and the column that shows them: of several that with the most, of those
 /// one that tells how long they last, of those a part of a vector before its size, and the one with
 /// the largest pulses.
-fn sampled(
-    region: &Region<'_>,
-    options: &ReadOptions,
-    headings: &[Heading],
-    clock: &Clock,
-) -> Option<(Table, usize)> {
+fn sampled(region: &Region<'_>, options: &ReadOptions, headings: &[Heading], clock: &Clock) -> Option<(Table, usize)> {
     let asked =
         |n: &usize| options.column.as_deref().is_none_or(|name| region.header[*n].eq_ignore_ascii_case(name.trim()));
     let others = || (0..headings.len()).filter(|n| Some(*n) != clock.column && asked(n));
@@ -91,8 +89,8 @@ fn sampled(
         let rank = (contacts, table.metadata.intervals, !sensor.vector);
         Some((sensor, table, rank))
     });
-    let (best, mut table, _) = found
-        .max_by(|(a, _, rank), (b, _, other)| rank.cmp(other).then(a.size(alike).total_cmp(&b.size(alike))))?;
+    let (best, mut table, _) =
+        found.max_by(|(a, _, rank), (b, _, other)| rank.cmp(other).then(a.size(alike).total_cmp(&b.size(alike))))?;
     let fainter = sensors.iter().filter(|sensor| !sensor.vector && sensor.column != best.column);
     let left = fainter.map(|s| LeftAside::new(Part::Column, shown(&region.header[s.column]), Why::Fainter));
     table.left_aside.extend(left);
@@ -113,10 +111,11 @@ fn vector(region: &Region<'_>, first: usize) -> Option<[usize; 3]> {
     places.into_iter().find_map(|at| Some([first, of(at, 'y')?, of(at, 'z')?]))
 }
 
-/// Whether a heading is that of a height, a place or a speed: the ball was filmed.
-fn places(heading: &Heading) -> bool {
+/// Whether a heading is that of heights, places or speeds: the ball was filmed.
+fn places(heading: &Heading, what: What) -> bool {
     let of = |dimension: Dimension| heading.unit.is_none_or(|unit| unit.dimension == dimension);
-    let place = |what: What| match what {
+    let place = |of_column: What| match of_column {
+        _ if of_column != what => false,
         What::Height => of(Dimension::Length) && !(heading.unit.is_none() && has_word(&heading.text, Phrase::Shown)),
         What::Speed => of(Dimension::Speed),
         _ => false,

@@ -42,6 +42,13 @@ impl Display for Note {
             Self::Felt { column, pulses, contacts } => {
                 write!(f, "{} of a sensor in '{column}', {contacts} of them contacts", plural(*pulses, "pulse"))
             }
+            Self::Flown { column, flights } => {
+                write!(
+                    f,
+                    "'{column}' is the speed of a ball in {}, whose tops are where it is none",
+                    plural(*flights, "flight")
+                )
+            }
             Self::Overdriven { part } => {
                 write!(f, "{:.1} % of the samples are as large as can be: record less loud", 100.0 * part)
             }

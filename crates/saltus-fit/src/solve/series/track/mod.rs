@@ -8,7 +8,7 @@ use super::flights::{self, Flights, NoFlights};
 use super::parabolas::{Sketch, sketch};
 use super::recording::in_metres;
 use super::samples::Samples;
-use super::wild::wild;
+use super::wild::{Wild, wild};
 use crate::elementary::{asinh, atan, hypot};
 use crate::model::{BEFORE, FLOOR, GRAVITY, LASTING, LEAST_DRAG, Law, Model, SPEED, Sample, TIME, Trajectory};
 use crate::quantity::Measured;
@@ -100,9 +100,14 @@ impl Recording {
         Ok(Self { instant, lasting })
     }
 
-    /// When the ball is dropped again after the last flight: a hand alone brings it higher than
-    /// that flight did, and then it falls by the same gravity, and bounces.
-    pub(crate) fn dropped_again(&self, series: &Samples, (repair, drag): (bool, Option<f64>)) -> Option<f64> {
+    /// When the ball is dropped again after the last flight, and the samples from there on: a hand
+    /// alone brings it higher than that flight did, and then it falls by the same gravity, and
+    /// bounces.
+    pub(crate) fn dropped_again(
+        &self,
+        series: &Samples,
+        (repair, drag): (bool, Option<f64>),
+    ) -> Option<(f64, Samples)> {
         let (end, apex) = self.instant.end();
         let later = series.after(end);
         if !later.heights.iter().any(|h| *h > apex) {
@@ -113,7 +118,12 @@ impl Recording {
             return None;
         }
         other.hold(drag);
-        Some(other.fitted(repair).ok()?.scale.origin.0)
+        Some((other.fitted(repair).ok()?.scale.origin.0, later))
+    }
+
+    /// How many wild samples are in one flight of another body.
+    pub(crate) fn another_body(&self) -> Option<usize> {
+        self.instant.body
     }
 
     /// By how much the BIC of contacts that take time is better; `None` where that does not show.
@@ -136,6 +146,8 @@ pub(crate) struct Candidates {
     scale: Scale,
     samples: Vec<Sample>,
     wild: usize,
+    /// How many of these are in one flight of another body.
+    body: Option<usize>,
     left_out: (usize, usize),
     /// Among those after the last flight are some that no flight passes.
     brief: bool,
@@ -157,7 +169,11 @@ pub(crate) struct Candidates {
 impl Candidates {
     /// One series cut into flights, with a sketch of its motion.
     fn cut(trial: usize, series: &Samples, repair: bool) -> Result<Self, Refusal> {
-        let wild = if repair { wild(&series.times, &series.heights) } else { vec![false; series.times.len()] };
+        let Wild { samples: wild, body } = if repair {
+            wild(&series.times, &series.heights)
+        } else {
+            Wild { samples: vec![false; series.times.len()], body: None }
+        };
         let kept = |values: &[f64]| -> Vec<f64> {
             values.iter().zip(&wild).filter(|(_, wild)| !**wild).map(|(value, _)| *value).collect()
         };
@@ -205,6 +221,7 @@ impl Candidates {
             scale,
             samples,
             wild: misfits().count() - early - late,
+            body,
             brief: late > 0,
             left_out,
             noise,
