@@ -237,5 +237,5 @@ fn every_remark_comes_back() {
         },
         Warning::MoreStrays { heights: 7 },
     ];
-    assert_eq!((back(notes), back(repairs), back(warnings)), (46, 6, 7));
+    assert_eq!((back(notes), back(repairs), back(warnings)), (47, 6, 7));
 }

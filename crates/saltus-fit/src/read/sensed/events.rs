@@ -8,12 +8,16 @@ use super::felt::{By, Felt, PULSES, Series};
 use crate::read::ReadOptions;
 use crate::read::cell::Cell;
 use crate::read::heading::Heading;
+use crate::read::phrases::Phrase;
 use crate::read::region::Region;
 use crate::read::vocabulary::Atom;
+use crate::read::words::has_word;
 use crate::statistics::{median, rounding};
 
 /// A switch that closes again within this time, s, chatters: no flight is so short.
 const CHATTER: f64 = 0.002;
+/// No log tells a time better, s: of a microsecond.
+const FINEST: f64 = 3e-7;
 /// The heights of a beam that bounces tell agree to this part.
 const BEAM: f64 = 0.1;
 /// No beam is so high above the floor, m.
@@ -49,7 +53,7 @@ impl States {
         // Where each state begins: in its row, or half way from the row before where that is a
         // sample of the other.
         let sampled = cells.windows(2).filter(|pair| pair[0] == pair[1]).count() > 1;
-        let written = rounding(times).max(f64::EPSILON * times.last().copied().unwrap_or_default().abs());
+        let written = rounding(times).max(FINEST);
         let begins = |n: &usize| *n == 0 || cells[*n] != cells[*n - 1];
         let change = |n: usize| match n.checked_sub(1).filter(|_| sampled) {
             Some(before) => (n, 0.5 * (times[n] + times[before]), (times[n] - times[before]) / 12f64.sqrt()),
@@ -113,7 +117,12 @@ impl States {
             let time = passes[n].1.end - falls(beam, speeds[n]);
             Felt { begin: time, end: time, sigma: SQRT_2 * passes[n].1.sigma, ..passes[n].0 }
         };
-        let felt = (0..=kept).map(contact).collect();
+        // The pass after the last of these begins with a flight that is known.
+        let last = passes.get(kept + 1).map(|(down, _)| {
+            let time = down.begin + falls(beam, speeds[kept]);
+            Felt { begin: time, end: time, sigma: SQRT_2 * down.sigma, ..*down }
+        });
+        let felt = (0..=kept).map(contact).chain(last).collect();
         Some(Series { column: self.column, rows: self.rows, felt, end: false, by: By::Beam })
     }
 }
@@ -125,14 +134,16 @@ pub(super) fn triggered(region: &Region<'_>, options: &ReadOptions, headings: &[
     let others =
         || (0..headings.len()).filter(|&n| n != clock && region.numbers(n).next().is_some() && !region.counts(n));
     let column = others().next().filter(|_| others().count() == 1)?;
-    if headings[column].has(Atom::Height) || headings[column].has(Atom::Position) {
+    // What is called by how much a sensor shows is no height.
+    let shown = has_word(&headings[column].text, Phrase::Shown);
+    if !shown && (headings[column].has(Atom::Height) || headings[column].has(Atom::Position)) {
         return None;
     }
     let number = |row: usize| match region.view.read(row, column) {
         Cell::Number(measured) if measured.unit.is_none() && measured.value > 0.0 => Some(measured.value),
         _ => None,
     };
-    let sigma = rounding(&times);
+    let sigma = rounding(&times).max(FINEST);
     let felt = |(&row, &time): (&usize, &f64)| Some(Felt { begin: time, end: time, sigma, peak: number(row)?, row });
     let felt: Vec<Felt> = rows.iter().zip(&times).map(felt).collect::<Option<_>>()?;
     let ordered = times.windows(2).all(|pair| pair[0] < pair[1]);

@@ -20,6 +20,8 @@ use crate::statistics::{Line, median, rounding};
 /// A top lies where the speed is less than this part of that at the contact before, and the flight
 /// goes on from where it is more again.
 const SLOW: f64 = 0.4;
+/// No contact is slower than this part of the fastest: what remains is noise.
+const LEAST: f64 = 0.05;
 /// Speeds of less than this part of the largest of a flight may be of either side of its top.
 const EITHER: f64 = 0.2;
 /// So many speeds tell the top of a flight,
@@ -104,22 +106,24 @@ fn contacts(flights: &[Flight]) -> Vec<f64> {
     first.into_iter().chain(between.iter().copied()).chain(last).collect()
 }
 
-/// Where the speed is largest before each contact.
+/// Where the speed is largest before each contact; a single sample, within a contact, is none.
 fn peaks(speeds: &[f64]) -> Vec<usize> {
-    let (mut found, mut top, mut low): (Vec<usize>, usize, Option<usize>) = (Vec::new(), 0, None);
-    for (n, speed) in speeds.iter().enumerate() {
-        match low {
-            None if *speed > speeds[top] => top = n,
-            None if *speed < SLOW * speeds[top] => {
-                found.push(top);
-                low = Some(n);
-            }
-            Some(least) if *speed < speeds[least] => low = Some(n),
-            Some(_) if *speed > SLOW * found.last().map_or(0.0, |&peak| speeds[peak]) => (top, low) = (n, None),
-            _ => {}
+    let middle = |n: usize| median(&mut speeds[n.saturating_sub(1)..speeds.len().min(n + 2)].to_vec());
+    let smooth: Vec<f64> = (0..speeds.len()).filter_map(middle).collect();
+    let least = LEAST * smooth.iter().copied().fold(0.0, f64::max);
+    let (mut found, mut top, mut low): (Vec<usize>, usize, bool) = (Vec::new(), 0, false);
+    for (n, speed) in smooth.iter().enumerate() {
+        if low && *speed > SLOW * found.last().map_or(0.0, |&peak| smooth[peak]) {
+            (top, low) = (n, false);
+        } else if !low && *speed > smooth[top] {
+            top = n;
+        } else if !low && *speed < SLOW * smooth[top] && smooth[top] > least {
+            found.push(top);
+            low = true;
         }
     }
-    found
+    let largest = |top: &usize| (*top..speeds.len().min(top + 3)).max_by(|&a, &b| speeds[a].total_cmp(&speeds[b]));
+    found.iter().filter_map(largest).collect()
 }
 
 /// The flight between two contacts, whose samples next to these may be of both.

@@ -38,11 +38,19 @@ const STILL: f64 = 0.02;
 /// So many samples at an end tell where that is.
 const ENDS: usize = 9;
 
-/// Which samples are wild, and how many of these are of one flight of another body, if that shows.
+/// Which samples are wild, how flights bend, and what is near to one.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Wild {
     pub(super) samples: Vec<bool>,
-    pub(super) body: Option<usize>,
+    bend: f64,
+    near: f64,
+}
+
+impl Wild {
+    /// None of so many.
+    pub(super) fn none(count: usize) -> Self {
+        Self { samples: vec![false; count], ..Self::default() }
+    }
 }
 
 /// The wild samples; heights upwards, times ascending. None is where the ball is held before it
@@ -77,7 +85,7 @@ fn moving(heights: &[f64]) -> std::ops::Range<usize> {
 }
 
 fn of_moving(times: &[f64], heights: &[f64]) -> Wild {
-    let none = Wild { samples: vec![false; times.len()], body: None };
+    let none = Wild::none(times.len());
     if times.len() < DENSE {
         return none;
     }
@@ -91,15 +99,16 @@ fn of_moving(times: &[f64], heights: &[f64]) -> Wild {
     elsewhere(times, heights, near, &mut wild);
     #[allow(clippy::cast_precision_loss)] // a count
     let part = wild.iter().filter(|wild| **wild).count() as f64 / wild.len() as f64;
-    let body = another(times, heights, &wild, (curvature, near));
-    Wild { body, samples: if part > MOST { none.samples } else { wild } }
+    let samples = if part > MOST { none.samples } else { wild };
+    Wild { samples, bend: curvature, near }
 }
 
-/// How many wild samples lie in one flight, of as many neighbours as show one, if they are those of
-/// a body that flies.
-fn another(times: &[f64], heights: &[f64], wild: &[bool], (curvature, near): (f64, f64)) -> Option<usize> {
+/// How many wild samples between two times lie in one flight, of as many neighbours as show one, if
+/// they are those of a body that flies.
+pub(super) fn another(times: &[f64], heights: &[f64], wild: &Wild, (from, to): (f64, f64)) -> Option<usize> {
+    let (curvature, near) = (wild.bend, wild.near);
     let wide = WINDOWS[0].0;
-    let left: Vec<usize> = (0..times.len()).filter(|&i| wild[i]).collect();
+    let left: Vec<usize> = (0..times.len()).filter(|&i| wild.samples[i] && (from..to).contains(&times[i])).collect();
     let of_pair = |window: &[usize], i: usize, j: usize| {
         let slope = (heights[j] - heights[i]) / (times[j] - times[i]);
         let passes = |k: &&usize| {

@@ -8,7 +8,7 @@ use super::flights::{self, Flights, NoFlights};
 use super::parabolas::{Sketch, sketch};
 use super::recording::in_metres;
 use super::samples::Samples;
-use super::wild::{Wild, wild};
+use super::wild::{Wild, another, wild};
 use crate::elementary::{asinh, atan, hypot};
 use crate::model::{BEFORE, FLOOR, GRAVITY, LASTING, LEAST_DRAG, Law, Model, SPEED, Sample, TIME, Trajectory};
 use crate::quantity::Measured;
@@ -169,13 +169,10 @@ pub(crate) struct Candidates {
 impl Candidates {
     /// One series cut into flights, with a sketch of its motion.
     fn cut(trial: usize, series: &Samples, repair: bool) -> Result<Self, Refusal> {
-        let Wild { samples: wild, body } = if repair {
-            wild(&series.times, &series.heights)
-        } else {
-            Wild { samples: vec![false; series.times.len()], body: None }
-        };
+        let found = if repair { wild(&series.times, &series.heights) } else { Wild::none(series.times.len()) };
+        let wild = &found.samples;
         let kept = |values: &[f64]| -> Vec<f64> {
-            values.iter().zip(&wild).filter(|(_, wild)| !**wild).map(|(value, _)| *value).collect()
+            values.iter().zip(wild).filter(|(_, wild)| !**wild).map(|(value, _)| *value).collect()
         };
         let (kept_times, heights) = (kept(&series.times), kept(&series.heights));
         let span = kept_times.last().copied().unwrap_or(0.0) - kept_times.first().copied().unwrap_or(0.0);
@@ -212,7 +209,7 @@ impl Candidates {
         // What no flight passes before the fall or after the last flight is not wild: the last
         // bounces have too few samples each.
         let (begin, end) = (kept_times[from], kept_times[to - 1]);
-        let misfits = || series.times.iter().zip(&wild).filter(|(_, wild)| **wild).map(|(time, _)| *time);
+        let misfits = || series.times.iter().zip(wild).filter(|(_, wild)| **wild).map(|(time, _)| *time);
         let (early, late) = (misfits().filter(|t| *t < begin).count(), misfits().filter(|t| *t > end).count());
         let left_out = (left_out.0 + early, left_out.1 + late);
         Ok(Self {
@@ -221,7 +218,7 @@ impl Candidates {
             scale,
             samples,
             wild: misfits().count() - early - late,
-            body,
+            body: another(&series.times, &series.heights, &found, (begin, end)),
             brief: late > 0,
             left_out,
             noise,
