@@ -386,8 +386,8 @@ fn distinct(regions: &mut [Region<'_>]) {
     }
 }
 
-/// A run, or a body, and what is measured of it: where blanks tell them apart a mark within is of the
-/// name, `Room:Ball: X`.
+/// A run, or a body, and what is measured of it: where blanks tell them apart a mark within is of
+/// the name, `Room:Ball: X`.
 fn of_run(cell: &str) -> Option<(&str, &str)> {
     cell.split_once(": ").or_else(|| cell.split_once(':'))
 }

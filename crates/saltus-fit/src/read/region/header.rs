@@ -69,7 +69,8 @@ pub(super) fn headers(view: View<'_>, legend: &Legend, row: usize, end: usize) -
     if of_units(&one) || of_errors(&one) || titled || Unit::listed(&one.join(" ")).is_some() {
         return found;
     }
-    // Names that come again below those of bodies, whatever these are called, say what they say alone.
+    // Names that come again below those of bodies say what they say alone, whatever these are
+    // called.
     let bodies = |names: &[String], lower: &[String]| {
         let again = |names: &[String]| (0..names.len()).any(|n| again(names, n).next().is_some());
         again(lower) && !again(names)
