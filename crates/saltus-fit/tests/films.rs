@@ -210,8 +210,8 @@ fn impacts_that_scatter_have_one_cor() {
     }
 }
 
-/// Of a film that goes on with another drop, of the same ball or another one, only the first is
-/// fitted, and that is a doubt; a ball that is picked up, or lies, is none.
+/// Of a film that goes on with other drops all are fitted, and what they say together is trusted
+/// where they agree; another ball is a doubt, and one that is picked up, or lies, is no drop.
 #[test]
 fn a_film_of_two_drops_is_of_both() {
     let ball = |drop: f64, cor: fn(f64) -> f64| Ball {
@@ -222,22 +222,70 @@ fn a_film_of_two_drops_is_of_both() {
         cor,
         contact: Contact::Instant,
     };
-    let joined = |first: &[(f64, f64)], then: &[(f64, f64)]| {
-        let last = first.last().unwrap().0 + 1.0 / 60.0;
-        let rows: Vec<(f64, f64)> = first.iter().copied().chain(then.iter().map(|(t, h)| (t + last, *h))).collect();
+    let joined = |parts: &[Vec<(f64, f64)>]| {
+        let (mut rows, mut last): (Vec<(f64, f64)>, f64) = (Vec::new(), 0.0);
+        for part in parts {
+            rows.extend(part.iter().map(|(t, h)| (t + last, *h)));
+            last = rows.last().unwrap().0 + 1.0 / 60.0;
+        }
         report(&csv(&noisy(&rows, &mut Noise(5), 2e-3)))
     };
     let first = ball(1.2, |_| 0.8).film(60.0, 3.0);
     let again = |report: &Report| report.findings().iter().any(|f| matches!(f.kind, FindingKind::DroppedAgain { .. }));
-    for (drop, cor) in [(1.2, CORS[3]), (1.1, CORS[1]), (0.7, CORS[0])] {
-        let report = joined(&first, &ball(drop, cor).film(60.0, 1.5));
+    let drops = |report: &Report| {
+        report.findings().iter().find_map(|f| match f.kind {
+            FindingKind::Drops { drops } => Some(drops),
+            _ => None,
+        })
+    };
+    for (drop, cor) in [(1.2, CORS[1]), (1.1, CORS[1]), (0.7, CORS[0])] {
+        let report = joined(&[first.clone(), ball(drop, cor).film(60.0, 1.5)]);
         assert!(again(&report) && report.verdict() == Verdict::Doubtful, "{report}");
+    }
+    let others = [1.0, 1.3].map(|drop| ball(drop, |_| 0.8).film(60.0, 2.4));
+    for count in [1, 2] {
+        let report = joined(&[&[first.clone()], &others[..count]].concat());
+        let near = report.cor().is_some_and(|cor| (cor.value - 0.8).abs() < 0.004);
+        assert!(near && drops(&report) == Some(count + 1) && report.verdict() == Verdict::Trusted, "{report}");
     }
     let lifted: Vec<(f64, f64)> = (0..90).map(|k| (f64::from(k) / 60.0, (0.02 * f64::from(k)).min(1.0))).collect();
     let lies: Vec<(f64, f64)> = (0..90).map(|k| (f64::from(k) / 60.0, 0.0)).collect();
     for then in [lifted, lies, Vec::new()] {
-        let report = joined(&first, &then);
-        assert!(!again(&report) && report.verdict() == Verdict::Trusted, "{report}");
+        let report = joined(&[first.clone(), then]);
+        assert!(!again(&report) && drops(&report).is_none() && report.verdict() == Verdict::Trusted, "{report}");
+    }
+}
+
+/// Two balls that are tracked in turn, now the one and now the other, are of no COR; a track that
+/// leaves one ball for what stands still, or for anything, is of that ball.
+#[test]
+#[ignore = "some films of two balls tracked in turn are still trusted, or a single ball is doubted"]
+fn a_film_of_two_balls_in_turn_is_doubted() {
+    let ball = |drop: f64, release: f64, cor: fn(f64) -> f64| {
+        Ball { drop, release, gravity: 9.81, drag: 0.0, cor, contact: Contact::Instant }.film(60.0, 2.8)
+    };
+    let body = |report: &Report| report.findings().iter().any(|f| matches!(f.kind, FindingKind::AnotherBody { .. }));
+    let one = ball(1.1, 0.2, |_| 0.82);
+    for (n, other) in [ball(0.9, 0.35, |_| 0.6), ball(1.2, 0.3, |_| 0.7), ball(0.8, 0.25, |_| 0.55)].iter().enumerate()
+    {
+        for run in [1.0, 3.0, 6.0] {
+            let mut noise = Noise(3 + n as u64);
+            let (mut which, mut rows) = (false, Vec::new());
+            for (a, b) in one.iter().zip(other) {
+                which ^= noise.uniform() < 0.5 / run;
+                rows.push(if which { *b } else { *a });
+            }
+            let report = report(&csv(&noisy(&rows, &mut noise, 2e-3)));
+            assert_ne!(report.verdict(), Verdict::Trusted, "{n} {run} {report}");
+        }
+    }
+    for still in [true, false] {
+        let mut noise = Noise(8);
+        let stray = |noise: &mut Noise| if still { 0.4 } else { 1.2 * noise.uniform() };
+        let rows: Vec<(f64, f64)> =
+            one.iter().map(|&(t, h)| (t, if noise.uniform() < 0.15 { stray(&mut noise) } else { h })).collect();
+        let report = report(&csv(&noisy(&rows, &mut noise, 2e-3)));
+        assert!(!body(&report), "{report}");
     }
 }
 

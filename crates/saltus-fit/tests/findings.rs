@@ -176,6 +176,7 @@ fn every_remark_comes_back() {
         Note::Still { tracks: columns() },
         Note::Heard { sounds: 48, contacts: 10, from: 0.0, to: 6.46 },
         Note::Felt { column: column(), pulses: 12, contacts: 8 },
+        Note::Flown { column: column(), flights: 6 },
         Note::Overdriven { part: 0.02 },
         Note::Sheets { sheets: columns(), drops: true },
         Note::SheetsAside { sheets: columns() },
@@ -236,5 +237,5 @@ fn every_remark_comes_back() {
         },
         Warning::MoreStrays { heights: 7 },
     ];
-    assert_eq!((back(notes), back(repairs), back(warnings)), (46, 6, 7));
+    assert_eq!((back(notes), back(repairs), back(warnings)), (47, 6, 7));
 }

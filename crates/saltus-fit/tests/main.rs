@@ -68,6 +68,7 @@ mod unseen;
 mod bounds;
 mod contract;
 mod decides;
+mod devices;
 mod findings;
 mod inside;
 mod limits;

@@ -223,7 +223,7 @@ fn what_a_sensor_shows_is_no_ball_by_itself() {
         0.0
     };
     assert!(refused(&Ball { beside: beam, noise: 0.01, ..load }.text("time (s),signal (V)")));
-    for header in ["time (s),light (lux)", "time (s),acceleration (m/s²)", "time (s),photogate (V)"] {
+    for header in ["time (s),light (lux)", "time (s),photogate (V)"] {
         assert!(refused(&BALL.text(header)), "{header}");
     }
     // A film is one, whatever its places look like.

@@ -326,6 +326,12 @@ pub enum FindingKind {
     FloorDrifts {
         part_per_second: f64,
     },
+    Drops {
+        drops: usize,
+    },
+    AnotherBody {
+        samples: usize,
+    },
     ManyWild {
         wild: usize,
         samples: usize,

@@ -182,6 +182,13 @@ pub enum Note {
         /// How many of them are contacts that count.
         contacts: usize,
     },
+    /// Speeds of a ball in flight tell when it was at its tops.
+    Flown {
+        /// The column.
+        column: String,
+        /// How many flights show.
+        flights: usize,
+    },
     /// A sound was recorded too loud.
     Overdriven {
         /// The part of its samples that are as large as can be.

@@ -19,7 +19,7 @@ use super::said::stem;
 use super::vocabulary::{Atom, ROWS, folded};
 use super::words::{Kind, Word, split, unaddressed};
 use super::{Event, LeftAside, Table, Trial};
-use crate::finding::{Change, Doubt};
+use crate::finding::{Change, Doubt, Note};
 use crate::quantity::Ball;
 
 /// A change, a tab, a phrase in lower case without accents, whose last word may go on where it ends
@@ -190,9 +190,12 @@ pub(super) fn doubt((n, region): (usize, &Region<'_>), table: &Table, remarks: &
     // One rate is that of a slow camera; a second one that at which it was played.
     let mut rates = remarks.iter().filter(own).flat_map(|r| r.text.split([',', ';'])).filter_map(frame_rate);
     let played = rates.next().is_some_and(|first| rates.any(|rate| rate != first));
+    // That a ball bounced a sensor tells by its signal, however it was set.
+    let felt = table.notes.iter().any(|note| matches!(note.kind, Note::Felt { .. } | Note::Flown { .. }));
     let heeded = |text: &str, change: Change| match change {
         Change::Clock => timed && (played || frame_rate(text).is_none()),
         Change::Shifted => region.zero.is_none(),
+        Change::Unclear => !felt,
         _ => true,
     };
     let grid = region.view.grid;

@@ -65,6 +65,9 @@ pub(super) fn read(cell: &str, comma: bool) -> Cell {
             (false, false) => Cell::Wrong(Fault::NotFinite),
         };
     }
+    if bare(text) {
+        return lengths(text, comma).map_or_else(Cell::Wrong, |found| found.map_or(Cell::Words, Cell::Number));
+    }
     if let Some(value) = respelt(text).and_then(|spelt| spelt.parse().ok()) {
         return Cell::Number(Measured { value, unit: None, error: None });
     }
@@ -135,6 +138,15 @@ pub(super) fn respelt(cell: &str) -> Option<String> {
     let mixed = text.contains(['O', 'o', 'l', 'I']) && text.contains(|c: char| c.is_ascii_digit());
     let spelt: String = if number && mixed { text.chars().map(digit).collect() } else { return None };
     spelt.parse::<f64>().is_ok_and(f64::is_finite).then_some(spelt)
+}
+
+/// Whether a text is a number and nothing else, however its marks are meant: it has no words.
+fn bare(text: &str) -> bool {
+    let part = |(at, c): (usize, char)| match c {
+        '+' | '-' => at == 0 || text[..at].ends_with(['e', 'E']),
+        c => c.is_ascii_digit() || matches!(c, '.' | ',' | 'e' | 'E'),
+    };
+    !text.starts_with(['e', 'E']) && !text.contains("..") && text.char_indices().all(part)
 }
 
 /// Readings of one event agree to this factor: `63-65` is a range of them, `5-11` is not.

@@ -19,15 +19,13 @@ use super::sensed;
 use super::sheet::{Content, Part};
 use super::text::{self, text};
 use super::title::{self, Stated};
+use super::tracks;
 use super::vocabulary::{Atom, folded};
 use super::workbook;
 use super::{Event, Metadata, ReadOptions, Reading, Table, against, assemble, check, pool, said, sports};
 use crate::error::TableError;
-use crate::finding::Note;
+use crate::finding::{Doubt, Note};
 use crate::statistics::FILMED;
-
-/// A track that moves less than this part of what the liveliest does is not the ball.
-const MOVES: f64 = 0.5;
 
 /// Reads `bytes` into a table that is not yet checked.
 pub(super) fn table(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Table, TableError> {
@@ -171,8 +169,8 @@ fn joined_up<'a>(
         aside.push(LeftAside::new(Kind::Text, name, Why::Derived).at(line));
     }
     named(&regions, &titles, &mut parts);
-    let still = if tracks { leave_still(&mut parts) } else { Vec::new() };
-    if tracks && pool::at_once(&parts) {
+    let still = if tracks { tracks::leave_still(&mut parts) } else { Vec::new() };
+    if tracks && tracks::at_once(&parts) {
         pool::told_apart(&mut parts, true);
     }
     let mut table = pool::join(grid.name, parts)?;
@@ -216,13 +214,19 @@ fn named(regions: &[Region<'_>], titles: &[Stated], parts: &mut [(String, Table)
     }
 }
 
-/// The table of a region: its bounces, or what a sensor felt of them.
+/// The table of a region: its bounces, or what a sensor felt of them, where nothing says that its
+/// readings are of bounces.
 fn one(region: &mut Region<'_>, options: &ReadOptions, metadata: Metadata) -> Result<Table, TableError> {
     let felt = |region: &Region<'_>| sensed::table(region, options, metadata);
     if let Some(table) = sensed::shows(region).then(|| felt(region)).flatten() {
         return Ok(table);
     }
-    bounces(region, options, metadata).or_else(|error| felt(region).ok_or(error))
+    let rows = region.rows.clone();
+    let said = |table: &Table| !table.doubts.iter().any(|doubt| matches!(doubt, Doubt::Unsaid { .. }));
+    match bounces(region, options, metadata) {
+        Ok(table) if said(&table) => Ok(table),
+        other => felt(&Region { rows, ..region.clone() }).map_or(other, Ok),
+    }
 }
 
 /// The table of a region of bounces: its columns by their names, the rows that hold readings, the
@@ -283,24 +287,6 @@ fn lacking(grid: &Grid<'_>, options: &ReadOptions, metadata: Metadata) -> Result
         return joined_up(grid, vec![region], false, options, metadata);
     }
     Err(region.error("no column holds heights or times").help("name one, such as 'height_cm' or 'time_s'"))
-}
-
-/// Takes out the tracks of things that stand still while the ball moves.
-fn leave_still(parts: &mut Vec<(String, Table)>) -> Vec<String> {
-    let travel = |table: &Table| {
-        let heights = || table.trials.iter().flat_map(|t| &t.readings).filter_map(|r| r.height);
-        heights().fold(f64::NEG_INFINITY, f64::max) - heights().fold(f64::INFINITY, f64::min)
-    };
-    let most = parts.iter().map(|(_, table)| travel(table)).fold(0.0, f64::max);
-    let mut still = Vec::new();
-    parts.retain(|(label, table)| {
-        let moves = travel(table) >= MOVES * most;
-        if !moves {
-            still.push(label.clone());
-        }
-        moves
-    });
-    still
 }
 
 /// The sheets of a workbook or the files of an archive that hold tables.

@@ -12,7 +12,7 @@ use super::region::Region;
 use super::rows::{Row, Rows};
 use super::said::shrinks;
 use super::sequence::LEVEL;
-use super::units::Dimension;
+use super::units::{Dimension, Unit};
 use super::vocabulary::{Atom, folded};
 use super::words::split;
 use crate::error::TableError;
@@ -166,6 +166,12 @@ pub(super) fn layout(
     let rowed = any(|t| t.height.is_some() || t.time.is_some() || t.interval.is_some() || t.speed.is_some());
     // Rows that are only counted may be those of a film, whose heights rise and fall.
     let filmed = !sure && !tracks.iter().all(|track| falling_throughout(region, rows, track));
+    let alone = |t: &Track| t.height.is_none() && t.before.is_none() && t.nth.is_empty() && !t.released();
+    if tracks.iter().all(alone)
+        && let Some(error) = evenly_timed(region, columns, rows)
+    {
+        return Err(error);
+    }
     if columns.of_tops() {
         return Ok(if numbered { Layout::Numbered } else { Layout::Listed });
     }
@@ -213,9 +219,6 @@ pub(super) fn layout(
     }
     if !rowed && !any(|t| t.after.is_some()) {
         return Err(nothing(region, columns));
-    }
-    if let Some(error) = evenly_timed(region, columns, rows) {
-        return Err(error);
     }
     if numbered {
         return Ok(Layout::Numbered);
@@ -348,8 +351,8 @@ fn beside(region: &Region<'_>, columns: &Columns, rows: &Rows) -> Option<TableEr
 
 /// Times as far apart as one another are those of samples, and not of contacts.
 fn evenly_timed(region: &Region<'_>, columns: &Columns, rows: &Rows) -> Option<TableError> {
-    let (clock, column, _) = columns.values().find(|(_, _, v)| v.what == What::Time && v.at == At::Row)?;
-    let times: Vec<f64> = rows.rows.iter().filter_map(|row| region.view.number(row.at, clock)).collect();
+    let (clock, column, _) = columns.values().find(|(_, _, v)| v.what == What::Time)?;
+    let times: Vec<f64> = rows.rows.iter().filter_map(|row| region.time(row.at, clock, Unit::SECOND)).collect();
     let mut apart: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let (low, high) = apart.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), t| (low.min(*t), high.max(*t)));
     let even = apart.len() > EVEN && high - low < (1.0 - LEVEL) * median(&mut apart)?;

@@ -15,17 +15,6 @@ use crate::error::TableError;
 use crate::finding::{Doubt, Note, Parts, Remark, Warning};
 use crate::quantity::{Ball, STANDARD_GRAVITY};
 
-/// Whether some tracks were followed at the same time: they are of several bodies.
-pub(super) fn at_once(parts: &[(String, Table)]) -> bool {
-    let span = |(_, table): &(String, Table)| {
-        let times = || table.trials.iter().flat_map(|t| &t.readings).filter_map(|r| r.time);
-        (times().fold(f64::INFINITY, f64::min), times().fold(f64::NEG_INFINITY, f64::max))
-    };
-    let mut spans: Vec<(f64, f64)> = parts.iter().map(span).collect();
-    spans.sort_by(|a, b| a.0.total_cmp(&b.0));
-    spans.windows(2).any(|pair| pair[1].0 < pair[0].1)
-}
-
 /// What the names of sheets tell: heights of release, trials, or balls and surfaces; says whether
 /// they are heights. Those of `bodies` are balls, whatever they count.
 pub(super) fn told_apart(found: &mut [(String, Table)], bodies: bool) -> bool {

@@ -6,8 +6,9 @@ use std::collections::HashSet;
 use super::ReadOptions;
 use super::aside::{LeftAside, Part, Why};
 use super::cell::Cell;
+use super::clause;
 use super::filed;
-use super::grid::{Grid, View};
+use super::grid::{Grid, View, shown};
 use super::heading::{At, Heading, Meaning, What};
 use super::region::{self, Region};
 use super::units::{Dimension, Unit};
@@ -38,6 +39,13 @@ const FRAMES: usize = 20;
 /// where half of the steps from one to the next are shorter than this part of the way.
 const NEAR: f64 = 0.1;
 
+/// Samples of a sensor without names stand below so many lines,
+const HEAD: usize = 20;
+/// and are so many: at the slowest rate that shows contacts, one second.
+const SAMPLES: usize = 100;
+/// What they are called.
+const SAMPLE: &str = "amplitude";
+
 /// Recognises the tables of a text; `fps` is the frame rate, by an option or a comment.
 pub(super) fn tables<'a>(
     grid: &'a Grid<'a>,
@@ -55,7 +63,7 @@ pub(super) fn tables<'a>(
     if first(0).eq_ignore_ascii_case("frame") && position(view, 0, "y1").is_some() {
         return imagej(view, options);
     }
-    if let Some(found) = by_hand(view) {
+    if let Some(found) = by_hand(view).or_else(|| samples(view)) {
         return Ok(found);
     }
     if let Some(found) = results(view) {
@@ -264,6 +272,21 @@ fn by_hand(view: View<'_>) -> Option<Recognised<'_>> {
     Some(Recognised { program: Some(Program::ImageJ), regions, tracks: true })
 }
 
+/// Samples one below the other without a name, as programs for sound export them, below lines that
+/// state their rate. `None` where it is none of it.
+fn samples(view: View<'_>) -> Option<Recognised<'_>> {
+    let bare = |row: usize| view.width(row) == 1 && view.is_number(row, 0);
+    let first = (0..view.rows().min(HEAD)).find(|&row| bare(row))?;
+    let text = |row: usize| view.cells(row).filter(|cell| !cell.is_empty()).collect::<Vec<_>>().join(" ");
+    let stated = (0..first).any(|row| clause::frame_rate(&text(row)).is_some());
+    let long = view.rows() - first >= SAMPLES;
+    (stated && long && (first..view.rows()).all(bare)).then(|| {
+        let aside = |row: usize| LeftAside::new(Part::Text, shown(&text(row)), Why::Note).at(view.line(row, 0));
+        let region = Region::new(view, vec![SAMPLE.to_owned()], first, (first..view.rows()).collect());
+        vec![Region { aside: (0..first).map(aside).collect(), ..region }].into()
+    })
+}
+
 /// What `ImageJ` measures of lines that were drawn, each as long as the ball was high: `Length`
 /// beside the brightness along them, `Mean`, `Min`, `Max`. `None` where it is none of it.
 fn results(view: View<'_>) -> Option<Recognised<'_>> {
@@ -363,12 +386,18 @@ fn distinct(regions: &mut [Region<'_>]) {
     }
 }
 
+/// A run, or a body, and what is measured of it: where blanks tell them apart a mark within is of
+/// the name, `Room:Ball: X`.
+fn of_run(cell: &str) -> Option<(&str, &str)> {
+    cell.split_once(": ").or_else(|| cell.split_once(':'))
+}
+
 /// Runs side by side: `Run 1: Time (s)`, `Run 2: Time (s)`; or the same names again, after a blank
 /// column or not.
 fn side_by_side<'a>(region: &Region<'a>) -> Option<Recognised<'a>> {
     let header = &region.header;
     let run = |cell: &str| {
-        let parts = cell.split_once(':').filter(|(_, name)| !name.trim().is_empty());
+        let parts = of_run(cell).filter(|(_, name)| !name.trim().is_empty());
         parts.map_or(String::new(), |(run, _)| run.trim().to_owned())
     };
     let mut runs: Vec<String> = Vec::new();
@@ -382,7 +411,7 @@ fn side_by_side<'a>(region: &Region<'a>) -> Option<Recognised<'a>> {
         Region { label, header: header.collect(), ..region.clone() }
     };
     // `A: drop`, `B: rebound` only count the columns: runs hold the same things.
-    let things: Vec<(&str, &str)> = header.iter().filter_map(|cell| cell.split_once(':')).collect();
+    let things: Vec<(&str, &str)> = header.iter().filter_map(|cell| of_run(cell)).collect();
     let alike = things.iter().enumerate().any(|(n, (run, name))| {
         things[..n].iter().any(|(other, same)| other.trim() != run.trim() && same.trim() == name.trim())
     });
@@ -394,7 +423,7 @@ fn side_by_side<'a>(region: &Region<'a>) -> Option<Recognised<'a>> {
                 own.is_empty() || own == *name
             });
             for cell in &mut region.header {
-                if let Some((_, own)) = cell.split_once(':') {
+                if let Some((_, own)) = of_run(cell) {
                     *cell = own.trim().to_owned();
                 }
             }

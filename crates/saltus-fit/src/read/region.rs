@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 
 use super::aside::{LeftAside, Part, Why};
-use super::cell::Cell;
+use super::cell::{Cell, clock};
 use super::datum::Zero;
 use super::grid::{View, shown};
 use super::heading::{DropHeight, Heading};
@@ -77,6 +77,11 @@ impl<'a> Region<'a> {
     /// The numbers of a column in the rows that hold readings, each in its own unit.
     pub(super) fn numbers(&self, column: usize) -> impl Iterator<Item = f64> {
         self.rows.iter().filter_map(move |&row| self.view.number(row, column))
+    }
+
+    /// The time in a cell, s: a number in its unit, or that of a clock, `1:02.35`.
+    pub(super) fn time(&self, row: usize, column: usize, unit: Unit) -> Option<f64> {
+        self.view.number(row, column).map(|time| unit.si(time)).or_else(|| clock(self.cell(row, column)))
     }
 
     /// Whether all numbers of a column are the same, there being several.

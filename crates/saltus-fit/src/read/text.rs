@@ -12,6 +12,11 @@ use super::units::Unit;
 use super::wrapped;
 use crate::error::TableError;
 
+/// So many lines of numbers,
+const SAMPLES: usize = 100;
+/// and so many to each other line, are written by a program.
+const OTHERS: usize = 10;
+
 /// The text of a file and, where it is not UTF-8, the name of its encoding.
 pub(super) struct Text<'a> {
     pub(super) text: Cow<'a, str>,
@@ -49,11 +54,21 @@ pub(super) fn text<'a>(name: &str, bytes: &'a [u8]) -> Result<Text<'a>, TableErr
         forms::indexed,
     ];
     let text = around.into_iter().fold(text, taken);
-    // What is typed by hand has no more lines than these; a longer text is of cells side by side.
-    let typed = text.lines().nth(MANY).is_none();
+    // What is typed by hand has no more lines than these; a longer text is of cells side by side, and
+    // so is one of numbers.
+    let typed = text.lines().nth(MANY).is_none() && !sampled(&text);
     let text = if typed { [forms::bulleted, forms::table].into_iter().fold(text, taken) } else { text };
     let text = aligned(&text).map_or(text, Cow::Owned);
     Ok(Text { text, encoding })
+}
+
+/// Whether lines of numbers and nothing else are so many beside all others that a program wrote
+/// them.
+fn sampled(text: &str) -> bool {
+    let mark = |c: char| matches!(c, ',' | ';' | '\t' | ' ');
+    let number = |cell: &str| cell.is_empty() || cell.parse::<f64>().is_ok();
+    let (numbers, others): (Vec<&str>, Vec<&str>) = text.lines().partition(|line| line.split(mark).all(number));
+    numbers.len() >= SAMPLES && numbers.len() >= OTHERS * others.len()
 }
 
 /// A text whose cells `#`, which name a count, are no comments; `None` where there are none.

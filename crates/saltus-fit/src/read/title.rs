@@ -6,7 +6,7 @@ use super::cell::{Cell, spaced};
 use super::clause::{clauses, drop, error, frame_rate, lengths, names_rate, of_clauses};
 use super::datum::{self, Datum};
 use super::grid::{Grid, shown};
-use super::heading::{At, DropHeight, Heading, What};
+use super::heading::{At, DropHeight, Heading, Meaning, What};
 use super::phrases::Phrase;
 use super::region::Region;
 use super::sizes::states_length;
@@ -15,6 +15,7 @@ use super::vocabulary::{Atom, ROWS, folded, misspelt};
 use super::words::{Kind, Word, split};
 use super::{Event, Table};
 use crate::finding::{Doubt, Note, Remark};
+use crate::statistics::{FILMED, RATES};
 
 /// Heights of release are read within this part of the one that is stated: a centimetre or two.
 const NOMINAL: f64 = 0.03;
@@ -70,6 +71,7 @@ pub(super) fn stated(region: &Region<'_>) -> Stated {
     let headings = region.header.iter().filter_map(|name| Heading::parse(name).rate);
     let of_column = || (0..region.header.len()).find_map(|column| of_column(region, column));
     found.fps = headings.into_iter().next().or_else(of_column).map(|fps| (fps, region.view.line(region.header_row, 0)));
+    found.fps = found.fps.or_else(|| lone(region));
     // Below a table as well, where a line stands alone.
     let above = region.aside.iter().filter_map(|aside| aside.line).map(|line| region.view.grid.row_of(line));
     let alone = |row: &usize| (1..region.view.width(*row)).all(|n| region.view.cell(*row, n).is_empty());
@@ -178,6 +180,18 @@ impl Stated {
         };
         *place = place.or(Some(unit));
     }
+}
+
+/// The rate of a film whose frames are counted, where the only number above the names stands in a
+/// line by itself.
+fn lone(region: &Region<'_>) -> Option<(f64, u64)> {
+    let counted = region.header.iter().any(|name| Heading::parse(name).meaning == Meaning::Frame);
+    let filled = |row: usize| region.view.cells(row).filter(|cell| !cell.is_empty()).count();
+    let number =
+        |row: usize| Some((region.view.number(row, 0).filter(|_| filled(row) == 1)?, region.view.line(row, 0)));
+    let mut alone = (0..region.header_row.min(ROWS)).filter_map(number);
+    let first = alone.next().filter(|(rate, _)| counted && (RATES[0]..=FILMED).contains(rate))?;
+    alone.next().is_none().then_some(first)
 }
 
 /// Whether a clause of a title is of frames, all of its words being understood: `frame in which the

@@ -4,6 +4,7 @@
 use super::cell::{self, Cell, Measured};
 use super::heading::{Heading, What};
 use super::phrases::Phrase;
+use super::stamps::of_samples;
 use super::units::Dimension;
 use super::vocabulary::Atom;
 use super::words::split;
@@ -213,11 +214,14 @@ fn below_name(text: &str, (first, heading): (usize, &str), row: impl Fn(&str) ->
 /// The time of a bounce by the clock of the device, `Bounce 1: 8829 ms  level=1000`, is better than
 /// that at which the line came.
 fn sent(text: &str) -> Option<String> {
+    let sampled = of_samples(text.lines().filter_map(stamped).map(|stamp| stamp.time));
     let reading = |line: &'_ str| -> Option<(String, String)> {
         let stamp = stamped(line).filter(|stamp| !stamp.chat && exact(stamp.time))?;
         let parts = stamp.said.split("  ").flat_map(|part| part.split([',', ';', '\t', '|'])).map(str::trim);
         let part = |part: &str| {
-            let (name, number) = part.split_once([':', '='])?;
+            // A length by itself, again and again, is how far the ball is.
+            let bare = || Some(("height", part)).filter(|_| sampled);
+            let (name, number) = part.split_once([':', '=']).or_else(bare)?;
             let Cell::Number(sent) = cell::read(number, false) else { return None };
             let unit = number.trim().trim_start_matches(|c: char| !c.is_alphabetic());
             let count = name.trim().trim_end_matches(|c: char| c.is_ascii_digit());

@@ -18,7 +18,7 @@ pub(crate) use chain::SURE;
 use chain::{Chain, LIKELY, chains};
 use onset::Ear;
 pub(crate) use onset::Onset;
-pub(crate) use pulse::{Pulse, Pulses};
+pub(crate) use pulse::Pulses;
 use wav::Spec;
 pub(crate) use wav::is_wav;
 use wave::Drawn;

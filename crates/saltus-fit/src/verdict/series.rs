@@ -53,6 +53,7 @@ pub(crate) fn judge(
     any_ball(judgement, &series.tracks, pooled);
     varying(judgement, pooled);
     roughness(judgement, series);
+    dropped_again(judgement, &series.tracks);
     gravity_off(judgement, &series.tracks, (gravity.value, pixels));
     physical(judgement, &series.tracks, pooled);
     if series.falls_upwards.is_none() {
@@ -286,6 +287,20 @@ fn roughness(judgement: &mut Judgement, series: &Series) {
     let all: usize = series.tracks.iter().map(|t| t.samples).sum();
     if wild * 20 > all {
         judgement.note(FindingKind::ManyWild { wild, samples: wild + all });
+    }
+}
+
+/// Several drops of one recording are of one ball where their CORs agree.
+fn dropped_again(judgement: &mut Judgement, tracks: &[Track]) {
+    let cor = |track: &Track| track.models.first().map(|model| model.cor);
+    let of_one = |pair: &&[Track]| pair[0].trial == pair[1].trial;
+    let again: Vec<&[Track]> = tracks.windows(2).filter(of_one).collect();
+    let other = |pair: &&&[Track]| cor(&pair[0]).zip(cor(&pair[1])).is_none_or(|(a, b)| differs(a, b));
+    if let Some(pair) = again.iter().find(other) {
+        let time_s = pair[1].impacts.first().map_or(0.0, |impact| impact.time);
+        judgement.doubt(FindingKind::DroppedAgain { time_s });
+    } else if !again.is_empty() {
+        judgement.note(FindingKind::Drops { drops: again.len() + 1 });
     }
 }
 

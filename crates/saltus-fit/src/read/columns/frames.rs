@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use super::{Columns, Kind};
+use super::{Column, Columns, Kind};
 use crate::error::TableError;
 use crate::finding::Note;
 use crate::read::ReadOptions;
@@ -11,9 +11,12 @@ use crate::read::grid::shown;
 use crate::read::heading::{Role, Value, What};
 use crate::read::region::Region;
 use crate::read::sequence::LEVEL;
-use crate::read::units::Unit;
+use crate::read::units::{Dimension, Unit};
 use crate::read::vocabulary::Atom;
 use crate::statistics::RATES;
+
+/// So many rows in the order of their times are those of a film.
+const FILM: usize = 20;
 
 impl Columns {
     /// The rate of frames that stands in for one that is not stated: where heights have no scale,
@@ -33,6 +36,28 @@ impl Columns {
         };
         let open = !timed && !scaled && read().any(|(n, _, _)| turns(n));
         (open && read().all(|(n, _, v)| v.position && bare(n))).then_some(RATES[0])
+    }
+
+    /// Numbers in a unit of time that rise from row to row, beside places and no other clock, are
+    /// times, whatever they are called.
+    pub(super) fn stamped(&mut self, region: &Region<'_>) {
+        let timed =
+            |c: &Column| c.kind == Kind::Frame || [What::Time, What::Interval, What::Total].iter().any(|&w| c.holds(w));
+        if self.columns.iter().any(timed) || !self.values().any(|(_, _, v)| v.position) {
+            return;
+        }
+        let rises = |n: usize| {
+            let times: Vec<f64> = region.numbers(n).collect();
+            times.len() == region.rows.len() && times.len() >= FILM && times.windows(2).all(|pair| pair[0] < pair[1])
+        };
+        let clock = |(n, c): &(usize, &Column)| {
+            let unit = c.heading.unit.is_some_and(|unit| unit.dimension == Dimension::Time);
+            c.kind == Kind::Aside && unit && !c.heading.turns() && rises(*n)
+        };
+        let clocks: Vec<usize> = self.columns.iter().enumerate().filter(clock).map(|(n, _)| n).collect();
+        if let [index] = *clocks.as_slice() {
+            self.columns[index].kind = Kind::Value(Value::of(What::Time));
+        }
     }
 
     /// A count of frames is a time, if nothing else is and the frame rate is known; `any` where one

@@ -26,6 +26,7 @@ use super::grid::shown;
 use super::heading::{At, Heading, Meaning, Role, Value, What};
 use super::named::event;
 use super::region::Region;
+use super::stamps::of_samples;
 use super::units::{Dimension, Scale, Unit};
 use super::vocabulary::Atom;
 use crate::error::TableError;
@@ -178,6 +179,7 @@ impl Columns {
         (fps, any): (Option<f64>, Option<f64>),
     ) -> Result<(), TableError> {
         self.wordy(region);
+        self.stamped(region);
         self.respelt(region);
         self.vertical(region);
         self.infer(region, options)?;
@@ -263,9 +265,9 @@ impl Columns {
     /// What is written in words beside readings is none: the date of a form is a remark, and what a
     /// ball or a surface names tells them apart, `Tennis ball` above `new` and `old`.
     fn wordy(&mut self, region: &Region<'_>) {
-        let numbers = |n: usize| {
-            region.rows.iter().any(|&row| region.view.is_number(row, n) && dated(region.cell(row, n)).is_none())
-        };
+        let number = |row: usize, n: usize| region.view.is_number(row, n) && dated(region.cell(row, n)).is_none();
+        let stamps = |n: usize| region.rows.iter().map(move |&row| region.cell(row, n));
+        let numbers = |n: usize| region.rows.iter().any(|&row| number(row, n)) || of_samples(stamps(n));
         let words = |n: usize| region.rows.iter().any(|&row| !region.view.cell(row, n).is_empty());
         let (read, wordy): (Vec<usize>, Vec<usize>) = self.values().map(|(n, _, _)| n).partition(|n| numbers(*n));
         for index in wordy.into_iter().filter(|n| !read.is_empty() && words(*n)) {

@@ -69,9 +69,18 @@ pub(super) fn headers(view: View<'_>, legend: &Legend, row: usize, end: usize) -
     if of_units(&one) || of_errors(&one) || titled || Unit::listed(&one.join(" ")).is_some() {
         return found;
     }
+    // Names that come again below those of bodies say what they say alone, whatever these are
+    // called.
+    let bodies = |names: &[String], lower: &[String]| {
+        let again = |names: &[String]| (0..names.len()).any(|n| again(names, n).next().is_some());
+        again(lower) && !again(names)
+    };
     let mut push = |names: Vec<String>, next: usize| {
         let names = united(view, &names, next).unwrap_or(names);
-        let score = score(&names);
+        let lower = if next > row + 1 { line(row + 1) } else { Vec::new() };
+        let bare = |name: &String| name.rsplit_once(": ").map_or(name.as_str(), |(_, own)| own).to_owned();
+        let own = || score(&names.iter().map(bare).collect::<Vec<_>>()) + 1;
+        let score = score(&names).max(if bodies(&names, &lower) { own() } else { 0 });
         let counted = measured(view, &names, next) || sampled(view, &names, next..end);
         let score = if (1..VALUE).contains(&score) && counted { score + VALUE } else { score };
         let numbers = |n: usize| (0..view.width(n).max(1)).any(|c| view.is_number(n, c));

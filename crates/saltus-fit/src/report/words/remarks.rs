@@ -40,7 +40,14 @@ impl Display for Note {
                 write!(f, "{sounds} in {:.2} s (from {from:.2} s), {contacts} of them contacts", to - from)
             }
             Self::Felt { column, pulses, contacts } => {
-                write!(f, "{} of '{column}' among its samples, {contacts} of them contacts", plural(*pulses, "pulse"))
+                write!(f, "{} of a sensor in '{column}', {contacts} of them contacts", plural(*pulses, "pulse"))
+            }
+            Self::Flown { column, flights } => {
+                write!(
+                    f,
+                    "'{column}' is the speed of a ball in {}, whose tops are where it is none",
+                    plural(*flights, "flight")
+                )
             }
             Self::Overdriven { part } => {
                 write!(f, "{:.1} % of the samples are as large as can be: record less loud", 100.0 * part)

@@ -258,9 +258,10 @@ fn recordings(kind: &FindingKind) -> Option<String> {
             format!("the COR is not the same at every impact: from {low:.3} to {high:.3} (see the impacts)")
         }
         FindingKind::DroppedAgain { time_s } => format!(
-            "after the last bounce the ball is dropped again, and meets the floor at {time_s:.2} s: that drop is left aside; give each drop a file, or \
-             a column that numbers them"
+            "after the last bounce the ball is dropped again, and meets the floor at {time_s:.2} s, with another COR, or for too short a time to tell: \
+             give each drop a file, or a column that numbers them"
         ),
+        FindingKind::Drops { drops } => format!("{drops} drops of one recording are fitted, each by itself"),
         FindingKind::Rough { rms, noise } => {
             format!("the motion does not follow the samples: it leaves {rms:.2e} where they scatter by {noise:.2e}")
         }
@@ -270,6 +271,9 @@ fn recordings(kind: &FindingKind) -> Option<String> {
         FindingKind::FloorDrifts { part_per_second } => format!(
             "the floor drifts by {:.1} % of the drop a second, as if the camera turned; the fit allows for it",
             100.0 * part_per_second
+        ),
+        FindingKind::AnotherBody { samples } => format!(
+            "{samples} samples that are no part of the motion are of one flight themselves: two bodies were tracked in turn; track one of them alone"
         ),
         FindingKind::ManyWild { wild, samples } => {
             format!("{wild} of {samples} samples are outliers: look at the tracking")

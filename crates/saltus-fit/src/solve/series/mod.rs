@@ -56,10 +56,12 @@ pub(crate) fn fit(table: &Table, repair: bool, drag: Option<f64>) -> Result<Opti
         let place = at(table, n);
         let found = match track::Recording::of(n, &samples, (repair, drag)) {
             Ok(found) => {
-                let again = found.dropped_again(&samples, (repair, drag));
+                let (drops, aside) = drops(n, found, samples, (repair, drag));
                 let doubt = |time_s| Finding::doubt(FindingKind::DroppedAgain { time_s }).at(place.clone());
-                series.repairs.extend(again.map(doubt));
-                Some(found)
+                series.repairs.extend(aside.map(doubt));
+                let doubt = |samples| Finding::doubt(FindingKind::AnotherBody { samples }).at(place.clone());
+                series.repairs.extend(drops.iter().filter_map(track::Recording::another_body).map(doubt));
+                drops
             }
             Err(track::Refusal::Flights(why)) => {
                 let samples = samples.times.len();
@@ -68,13 +70,13 @@ pub(crate) fn fit(table: &Table, repair: bool, drag: Option<f64>) -> Result<Opti
                     NoFlights::TooFew => FindingKind::TooFewSamples { samples },
                 };
                 series.refused.push(Finding::refusal(kind).at(place.clone()));
-                None
+                Vec::new()
             }
             Err(track::Refusal::Fit(failure)) => {
                 let unidentified: Option<()> = identified("a series of heights", Err(failure))?;
                 debug_assert!(unidentified.is_none());
                 series.refused.push(Finding::refusal(FindingKind::MotionUndetermined).at(place.clone()));
-                None
+                Vec::new()
             }
         };
         recordings.push((place, repairs, found));
@@ -82,7 +84,7 @@ pub(crate) fn fit(table: &Table, repair: bool, drag: Option<f64>) -> Result<Opti
     if !seen {
         return Ok(None);
     }
-    let fitted = || recordings.iter().filter_map(|(_, _, found)| found.as_ref());
+    let fitted = || recordings.iter().flat_map(|(_, _, found)| found);
     // Positive where contacts that take time are better.
     let gain: f64 = fitted().filter_map(track::Recording::gain).sum();
     let under = |lasting: bool| {
@@ -101,4 +103,23 @@ pub(crate) fn fit(table: &Table, repair: bool, drag: Option<f64>) -> Result<Opti
         series.repairs.extend(repairs.into_iter().map(|kind| Finding::note(kind).at(place.clone())));
     }
     Ok(Some(series))
+}
+
+/// The drops of a trial, the first of which was found, and when one meets the floor that is left
+/// aside.
+fn drops(
+    trial: usize,
+    first: track::Recording,
+    samples: samples::Samples,
+    how: (bool, Option<f64>),
+) -> (Vec<track::Recording>, Option<f64>) {
+    let (mut found, mut left) = (vec![first], samples);
+    while let Some((time, later)) = found[found.len() - 1].dropped_again(&left, how) {
+        match track::Recording::of(trial, &later, how) {
+            Ok(next) => found.push(next),
+            Err(_) => return (found, Some(time)),
+        }
+        left = later;
+    }
+    (found, None)
 }

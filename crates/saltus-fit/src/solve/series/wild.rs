@@ -27,19 +27,40 @@ const MOST_RUNS: usize = 1000;
 /// With more wild samples than this part of all, the series is of something else.
 const MOST: f64 = 0.45;
 
+/// So many wild samples in one flight are those of another body: of samples at random no three are,
+const BODY: usize = 6;
+/// if the flight passes so many times what counts as near: what was tracked beside the ball and
+/// stands still passes nothing.
+const PASSES: f64 = 4.0;
+
 /// A ball that stays within this part of the range lies, or is held.
 const STILL: f64 = 0.02;
 /// So many samples at an end tell where that is.
 const ENDS: usize = 9;
 
-/// Which samples are wild; heights upwards, times ascending. None is where the ball is held before
-/// it falls, or lies when all is over.
-pub(super) fn wild(times: &[f64], heights: &[f64]) -> Vec<bool> {
-    let mut all = vec![false; times.len()];
+/// Which samples are wild, how flights bend, and what is near to one.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Wild {
+    pub(super) samples: Vec<bool>,
+    bend: f64,
+    near: f64,
+}
+
+impl Wild {
+    /// None of so many.
+    pub(super) fn none(count: usize) -> Self {
+        Self { samples: vec![false; count], ..Self::default() }
+    }
+}
+
+/// The wild samples; heights upwards, times ascending. None is where the ball is held before it
+/// falls, or lies when all is over.
+pub(super) fn wild(times: &[f64], heights: &[f64]) -> Wild {
+    let mut samples = vec![false; times.len()];
     let moving = moving(heights);
     let wild = of_moving(&times[moving.clone()], &heights[moving.clone()]);
-    all[moving].copy_from_slice(&wild);
-    all
+    samples[moving].copy_from_slice(&wild.samples);
+    Wild { samples, ..wild }
 }
 
 /// The samples between those at either end that stay where they are, and some of these.
@@ -63,8 +84,8 @@ fn moving(heights: &[f64]) -> std::ops::Range<usize> {
     if held + lies < count { held..count - lies } else { 0..count }
 }
 
-fn of_moving(times: &[f64], heights: &[f64]) -> Vec<bool> {
-    let none = vec![false; times.len()];
+fn of_moving(times: &[f64], heights: &[f64]) -> Wild {
+    let none = Wild::none(times.len());
     if times.len() < DENSE {
         return none;
     }
@@ -78,7 +99,35 @@ fn of_moving(times: &[f64], heights: &[f64]) -> Vec<bool> {
     elsewhere(times, heights, near, &mut wild);
     #[allow(clippy::cast_precision_loss)] // a count
     let part = wild.iter().filter(|wild| **wild).count() as f64 / wild.len() as f64;
-    if part > MOST { none } else { wild }
+    let samples = if part > MOST { none.samples } else { wild };
+    Wild { samples, bend: curvature, near }
+}
+
+/// How many wild samples between two times lie in one flight, of as many neighbours as show one, if
+/// they are those of a body that flies.
+pub(super) fn another(times: &[f64], heights: &[f64], wild: &Wild, (from, to): (f64, f64)) -> Option<usize> {
+    let (curvature, near) = (wild.bend, wild.near);
+    let wide = WINDOWS[0].0;
+    let left: Vec<usize> = (0..times.len()).filter(|&i| wild.samples[i] && (from..to).contains(&times[i])).collect();
+    let of_pair = |window: &[usize], i: usize, j: usize| {
+        let slope = (heights[j] - heights[i]) / (times[j] - times[i]);
+        let passes = |k: &&usize| {
+            let (s, back) = (times[**k] - times[i], times[**k] - times[j]);
+            (heights[**k] - heights[i] - s * (slope + 0.5 * curvature * back)).abs() <= near
+        };
+        let passed: Vec<f64> = window.iter().filter(passes).map(|&k| heights[k]).collect();
+        let ends = passed.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), h| (low.min(*h), high.max(*h)));
+        (ends.1 - ends.0 > PASSES * near).then_some(passed.len())
+    };
+    let of_window = |window: &[usize]| {
+        let ends = window.iter().flat_map(|&j| window.iter().map(move |&i| (i, j))).filter(|(i, j)| i < j);
+        ends.filter_map(|(i, j)| of_pair(window, i, j)).max()
+    };
+    let windows = (0..left.len()).map(|n| {
+        let near = left[n..].iter().take_while(|&&k| k < left[n] + 2 * wide).count();
+        &left[n..n + near]
+    });
+    windows.filter_map(of_window).max().filter(|samples| *samples >= BODY)
 }
 
 /// Whether a parabola of this curvature through sample `i` passes most samples of a window around

@@ -8,7 +8,7 @@ use super::flights::{self, Flights, NoFlights};
 use super::parabolas::{Sketch, sketch};
 use super::recording::in_metres;
 use super::samples::Samples;
-use super::wild::wild;
+use super::wild::{Wild, another, wild};
 use crate::elementary::{asinh, atan, hypot};
 use crate::model::{BEFORE, FLOOR, GRAVITY, LASTING, LEAST_DRAG, Law, Model, SPEED, Sample, TIME, Trajectory};
 use crate::quantity::Measured;
@@ -100,9 +100,14 @@ impl Recording {
         Ok(Self { instant, lasting })
     }
 
-    /// When the ball is dropped again after the last flight: a hand alone brings it higher than
-    /// that flight did, and then it falls by the same gravity, and bounces.
-    pub(crate) fn dropped_again(&self, series: &Samples, (repair, drag): (bool, Option<f64>)) -> Option<f64> {
+    /// When the ball is dropped again after the last flight, and the samples from there on: a hand
+    /// alone brings it higher than that flight did, and then it falls by the same gravity, and
+    /// bounces.
+    pub(crate) fn dropped_again(
+        &self,
+        series: &Samples,
+        (repair, drag): (bool, Option<f64>),
+    ) -> Option<(f64, Samples)> {
         let (end, apex) = self.instant.end();
         let later = series.after(end);
         if !later.heights.iter().any(|h| *h > apex) {
@@ -113,7 +118,12 @@ impl Recording {
             return None;
         }
         other.hold(drag);
-        Some(other.fitted(repair).ok()?.scale.origin.0)
+        Some((other.fitted(repair).ok()?.scale.origin.0, later))
+    }
+
+    /// How many wild samples are in one flight of another body.
+    pub(crate) fn another_body(&self) -> Option<usize> {
+        self.instant.body
     }
 
     /// By how much the BIC of contacts that take time is better; `None` where that does not show.
@@ -136,6 +146,8 @@ pub(crate) struct Candidates {
     scale: Scale,
     samples: Vec<Sample>,
     wild: usize,
+    /// How many of these are in one flight of another body.
+    body: Option<usize>,
     left_out: (usize, usize),
     /// Among those after the last flight are some that no flight passes.
     brief: bool,
@@ -157,9 +169,10 @@ pub(crate) struct Candidates {
 impl Candidates {
     /// One series cut into flights, with a sketch of its motion.
     fn cut(trial: usize, series: &Samples, repair: bool) -> Result<Self, Refusal> {
-        let wild = if repair { wild(&series.times, &series.heights) } else { vec![false; series.times.len()] };
+        let found = if repair { wild(&series.times, &series.heights) } else { Wild::none(series.times.len()) };
+        let wild = &found.samples;
         let kept = |values: &[f64]| -> Vec<f64> {
-            values.iter().zip(&wild).filter(|(_, wild)| !**wild).map(|(value, _)| *value).collect()
+            values.iter().zip(wild).filter(|(_, wild)| !**wild).map(|(value, _)| *value).collect()
         };
         let (kept_times, heights) = (kept(&series.times), kept(&series.heights));
         let span = kept_times.last().copied().unwrap_or(0.0) - kept_times.first().copied().unwrap_or(0.0);
@@ -196,7 +209,7 @@ impl Candidates {
         // What no flight passes before the fall or after the last flight is not wild: the last
         // bounces have too few samples each.
         let (begin, end) = (kept_times[from], kept_times[to - 1]);
-        let misfits = || series.times.iter().zip(&wild).filter(|(_, wild)| **wild).map(|(time, _)| *time);
+        let misfits = || series.times.iter().zip(wild).filter(|(_, wild)| **wild).map(|(time, _)| *time);
         let (early, late) = (misfits().filter(|t| *t < begin).count(), misfits().filter(|t| *t > end).count());
         let left_out = (left_out.0 + early, left_out.1 + late);
         Ok(Self {
@@ -205,6 +218,7 @@ impl Candidates {
             scale,
             samples,
             wild: misfits().count() - early - late,
+            body: another(&series.times, &series.heights, &found, (begin, end)),
             brief: late > 0,
             left_out,
             noise,
