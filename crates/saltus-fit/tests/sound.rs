@@ -30,12 +30,10 @@ fn fitted(sound: Sound) -> Report {
     Fit::new().run(&Table::from_sound(sound)).unwrap()
 }
 
-/// Whether the report itself says that chance may have made the contacts.
+/// Whether the report itself says that chance, or something else, may have made the contacts.
 fn is_doubted(report: &Report) -> bool {
-    report
-        .findings()
-        .iter()
-        .any(|finding| matches!(&finding.kind, FindingKind::ReadDoubt { doubt: Doubt::Chance { .. } }))
+    let doubted = |doubt: &Doubt| matches!(doubt, Doubt::Chance { .. } | Doubt::Undying { .. });
+    report.findings().iter().any(|finding| matches!(&finding.kind, FindingKind::ReadDoubt { doubt } if doubted(doubt)))
 }
 
 fn near(t: f64, times: impl IntoIterator<Item = f64>) -> bool {
@@ -337,4 +335,26 @@ proptest! {
         // The faintest may be lost among what is no longer the noise.
         prop_assert!(10 * same >= 9 * a.len().max(b.len()) - 9, "{} {} {}", same, a.len(), b.len());
     }
+}
+
+/// Two balls dropped one after the other have a COR each; of one ball the drops are of one COR.
+#[test]
+fn drops_of_two_balls_are_told_apart() {
+    let clean = |least: f64, most: f64| {
+        let mut seeds = (0..200).map(|seed| make(Kind::Clean, seed));
+        seeds.find(|made| (least..most).contains(&made.cor) && made.rate == 44_100 && made.contacts.len() > 8).unwrap()
+    };
+    let (one, other) = (clean(0.70, 0.78), clean(0.85, 0.92));
+    let after = |second: &Made| {
+        let samples: Vec<f32> = one.samples.iter().chain(&second.samples).copied().collect();
+        fitted(Sound::of("two", one.rate, &samples).unwrap())
+    };
+    let (two, same) = (after(&other), after(&one));
+    let cors: Vec<f64> = two.groups().iter().filter_map(|group| Some(group.report.cor()?.value)).collect();
+    assert!(cors.len() == 2 && near_cor(cors[0], one.cor) && near_cor(cors[1], other.cor), "{cors:?}");
+    assert!(same.groups().is_empty() && near_cor(same.cor().unwrap().value, one.cor), "{same}");
+}
+
+fn near_cor(found: f64, planted: f64) -> bool {
+    (found - planted).abs() < 0.015
 }
