@@ -2,7 +2,6 @@
 //! leaves free.
 
 use super::bounced::Bounced;
-use super::chain::SURE;
 use super::onset::{Ear, Onset};
 use super::wav::Spec;
 use crate::elementary::ln;
@@ -10,7 +9,7 @@ use crate::elementary::ln;
 /// What counts is the sound above this frequency, Hz: hum of the mains and its first overtones, and
 /// steps, are below;
 const ALL: f64 = 200.0;
-/// where no ball is heard for sure in that, the sound above this one, Hz: the click of a contact
+/// where no ball is heard in that, the sound above this one, Hz: the click of a contact
 /// goes to some thousand, and most noise is below.
 const BRIGHT: f64 = 2000.0;
 /// What is bright is listened to where the samples have room for two octaves of it.
@@ -48,8 +47,7 @@ impl Ears {
         self.0.first().map_or(0.0, |ear| ear.clipped as f64 / ear.frames.max(1) as f64)
     }
 
-    /// What is heard: the first sound in which a ball is heard for sure, or in which it is heard
-    /// best.
+    /// What is heard: the first sound in which a ball is heard.
     pub(super) fn heard(self) -> Heard {
         #[allow(clippy::cast_precision_loss)] // two
         let tries = self.0.len() as f64;
@@ -69,7 +67,7 @@ impl Ears {
             if better {
                 best = Some(heard);
             }
-            if best.as_ref().is_some_and(|best| best.evidence() >= SURE) {
+            if best.as_ref().is_some_and(|best| best.bounced.is_some()) {
                 break;
             }
         }
