@@ -16,7 +16,7 @@ use crate::solve::fits::{Fits, Known};
 use crate::solve::one::OneKind;
 use crate::solve::series::{self, Series};
 use crate::solve::{bootstrap, kind, outliers, tolerance};
-use crate::verdict::{self, Stated};
+use crate::verdict::{self, Cor, Stated};
 
 /// What is known beside the table, and the fit itself.
 ///
@@ -277,6 +277,11 @@ impl Fit {
             let fit = if named.air_shows(table, ball)? { named.drag(ball.drag()) } else { named };
             return fit.run_with(table, progress);
         }
+        if let Some(drops) = table.by_drops().filter(|_| !self.within)
+            && self.differ(&drops)?
+        {
+            return self.run_with(&drops, progress);
+        }
         let as_read = table;
         let (table, known) = self.scaled(table);
         let table = &*table;
@@ -307,6 +312,15 @@ impl Fit {
             judgement.note(FindingKind::NoBootstrap { trials: evidence.trials.len() });
         }
         Ok(Report::build(&fits, comparison, extras, judgement, self.ball))
+    }
+
+    /// Whether the groups of a table are surely of several balls.
+    fn differ(&self, table: &Table) -> Result<bool, FitError> {
+        let own = Self { within: true, ..*self };
+        let cor = |name: &str| Ok(own.run(&table.of_group(name))?.cor().copied());
+        let cors: Vec<Cor> =
+            table.groups().into_iter().filter_map(|name| cor(name).transpose()).collect::<Result<_, FitError>>()?;
+        Ok(cors.iter().enumerate().any(|(n, one)| cors[..n].iter().any(|other| one.is_apart(other))))
     }
 
     /// Whether the readings of a ball that the table names are better explained with its air.

@@ -52,6 +52,8 @@ fn files() -> Vec<PathBuf> {
         "read/phrases.rs",
         "read/programs.rs",
         "read/title.rs",
+        "sound/ears.rs",
+        "sound/fade.rs",
         "sound/onset.rs",
         "sound/chain.rs",
         "sound/pulse.rs",

@@ -48,6 +48,7 @@ mod unscaled;
 mod wording;
 
 // Estimation: what is planted is found, and how far that can be believed.
+mod air;
 mod coverage;
 mod films;
 mod laws;

@@ -133,6 +133,13 @@ pub enum Doubt {
         /// Chance makes such a sound once in so many recordings like this.
         once_in: u64,
     },
+    /// Sounds were taken for contacts of a ball, and do not grow fainter as those of a ball do.
+    Undying {
+        /// By how much they do from the first to the last, dB.
+        lost_db: i32,
+        /// By how much the energy of the impacts does.
+        due_db: i32,
+    },
     /// A remark changes what the readings mean.
     Remark {
         /// The remark.

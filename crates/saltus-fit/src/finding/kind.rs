@@ -343,6 +343,11 @@ pub enum FindingKind {
     },
     GainsSpeed,
     /// The COR is that without the air, whose drag was stated.
+    /// The times show the air, and the COR is that beside it.
+    AirShows {
+        /// Per metre.
+        drag: Measured,
+    },
     DragHeld {
         drag_per_m: f64,
     },

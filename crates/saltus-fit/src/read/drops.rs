@@ -40,6 +40,14 @@ impl Table {
         Self { trials, ..self.clone() }
     }
 
+    /// The table of a sound of several drops with a group for each of them; none of another table.
+    pub(crate) fn by_drops(&self) -> Option<Self> {
+        let several = !self.sounds.is_empty() && self.trials.len() > 1;
+        let mut table = several.then(|| self.clone())?;
+        table.trials.iter_mut().for_each(|trial| trial.group.clone_from(&trial.label));
+        Some(table)
+    }
+
     /// The table with a group for each of the words of a column that was left aside, where these
     /// come again: of a column that is not understood, or of words beside readings, and not of
     /// remarks. `None` where a cell holds a number or nothing, or a word stands beside one trial.

@@ -64,7 +64,12 @@ pub(super) fn table(sound: Sound, options: &ReadOptions) -> Table {
     if sound.clipped() > CLIPPED {
         notes.push(Note::Overdriven { part: sound.clipped() }.into());
     }
-    let doubts = doubts(sound.drops().iter().map(Vec::len), &sound.evidence);
+    let mut doubts = doubts(sound.drops().iter().map(Vec::len), &sound.evidence);
+    let undying = sound.fades.iter().filter(|fade| fade.is_none());
+    #[allow(clippy::cast_possible_truncation)] // decibels
+    doubts.extend(
+        undying.map(|fade| Doubt::Undying { lost_db: fade.lost.round() as i32, due_db: fade.due.round() as i32 }),
+    );
     let left_aside = aside(Part::Sound, &sound.unused);
     let metadata = super::Metadata { drop: options.drop, ..super::Metadata::default() };
     Table {

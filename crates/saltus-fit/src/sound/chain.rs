@@ -30,6 +30,8 @@ const LOUDER: f64 = 2.0;
 const FAINTER: f64 = 4.5;
 /// No contact follows a louder sound within this part of the flight before it: an echo does.
 const ECHO: f64 = 0.2;
+/// An echo comes so soon after its sound, s: of a wall in 34 m.
+const LATE: f64 = 0.2;
 /// Of several sounds near where a contact is due, a difference of loudness by this much weighs like
 /// one of time by all that there may be.
 const SPREAD: f64 = 2.5;
@@ -159,9 +161,30 @@ impl Listener<'_> {
             let middle = (chain.at.len() - 3) / 2;
             let again = self.followed([chain.at[middle], chain.at[middle + 1], chain.at[middle + 2]]);
             let surer = if again.at.len() + 1 >= chain.at.len() { again } else { chain.clone() };
-            Chain { evidence: surer.evidence - ln(begun), ..surer }
+            Chain { evidence: surer.evidence - ln(begun), ..self.direct(surer) }
         };
         found.iter().map(again).collect()
+    }
+
+    /// The sounds of which those of a chain are echoes, if they are: louder, and each as long before.
+    fn direct(&self, chain: Chain) -> Chain {
+        let first = chain.at[0];
+        let of = |delay: f64| {
+            let source = |(&n, &number): (&usize, &usize)| {
+                let due = self.time(n) - delay;
+                let from = self.onsets.partition_point(|onset| onset.time < due - SLACK);
+                let near = (from..n).take_while(|&m| self.time(m) <= due + SLACK);
+                near.filter(|&m| self.levels[m] > self.levels[n]).map(|m| (m, number)).next()
+            };
+            chain.at.iter().zip(&chain.numbers).filter_map(source).unzip()
+        };
+        let from = self.onsets.partition_point(|onset| onset.time < self.time(first) - LATE);
+        let delays = (from..first).map(|n| self.time(first) - self.time(n));
+        let all_but_one = |(at, _): &(Vec<usize>, Vec<usize>)| at.len() >= 3.max(chain.at.len() - 1);
+        match delays.map(of).find(all_but_one) {
+            Some((at, numbers)) => Chain { counts: at.len(), at, numbers, ..chain },
+            None => chain,
+        }
     }
 
     /// The chain to both sides of three contacts.

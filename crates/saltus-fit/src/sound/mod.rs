@@ -1,7 +1,10 @@
 //! A sound of a bouncing ball: the contacts in it, each with its uncertainty, and what else is
 //! heard.
 
+mod bounced;
 mod chain;
+mod ears;
+mod fade;
 mod onset;
 mod pulse;
 mod wav;
@@ -14,18 +17,16 @@ use saltus_bounce::units::Quantity;
 
 use crate::error::TableError;
 use crate::finding::Lines;
+pub(crate) use bounced::{Bounced, Unused};
 pub(crate) use chain::SURE;
-use chain::{Chain, LIKELY, chains};
-use onset::Ear;
+use ears::{Ears, Heard};
+pub(crate) use fade::Fade;
 pub(crate) use onset::Onset;
 pub(crate) use pulse::Pulses;
 use wav::Spec;
 pub(crate) use wav::is_wav;
 use wave::Drawn;
 pub use wave::Wave;
-
-/// What comes so soon after a contact, s, and is fainter, is its echo or its ringing.
-const RINGS: f64 = 0.15;
 
 /// A recorded sound, and the contacts of a ball in it.
 ///
@@ -57,6 +58,7 @@ pub struct Sound {
     drops: Vec<Vec<Contact>>,
     /// Of each drop, ln of one over how many as good ones come by chance.
     pub(crate) evidence: Vec<f64>,
+    pub(crate) fades: Vec<Fade>,
     pub(crate) unused: Vec<(f64, Unused)>,
     clipped: f64,
     wave: Wave,
@@ -72,56 +74,6 @@ pub struct Contact {
     pub time: f64,
     /// The standard error of the time, in s.
     pub sigma: f64,
-}
-
-/// Why a sound is not used.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Unused {
-    /// It follows a contact as its echo or its ringing.
-    Echo,
-    /// It is a contact whose time no longer tells its flight.
-    Close,
-    /// It comes when no contact is due.
-    Stray,
-}
-
-/// The contacts of bouncing balls among onsets.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Bounced {
-    /// Of each drop the onsets, at least three, and which contacts they are, from 1.
-    pub(crate) drops: Vec<Vec<(usize, usize)>>,
-    /// Of each drop, ln of one over how many as good ones come by chance.
-    pub(crate) evidence: Vec<f64>,
-    /// The other onsets, and why they are none.
-    pub(crate) unused: Vec<(usize, Unused)>,
-}
-
-impl Bounced {
-    /// The contacts among onsets; `None` where no ball bounces. One chain of all onsets is believed
-    /// where they are `felt`, for little else is.
-    pub(crate) fn among(onsets: &[Onset], felt: bool) -> Option<Self> {
-        let mut chains = chains(onsets);
-        let whole = |chain: &Chain| felt && chain.at.len() == onsets.len();
-        chains.retain(|chain| chain.counts >= 3 && (whole(chain) || is_believed(onsets, chain)));
-        let of = |chain: &Chain| {
-            let numbers = chain.numbers.iter().map(|number| number + 1);
-            chain.at.iter().copied().zip(numbers).take(chain.counts).collect()
-        };
-        let used = |n: &usize| chains.iter().any(|chain| chain.at[..chain.counts].contains(n));
-        let why = |n: usize| {
-            let mut contacts = chains.iter().flat_map(|chain| &chain.at).map(|&m| &onsets[m]);
-            if chains.iter().any(|chain| chain.at.contains(&n)) {
-                Unused::Close
-            } else if contacts.any(|contact| follows(&onsets[n], contact) && onsets[n].power < contact.power) {
-                Unused::Echo
-            } else {
-                Unused::Stray
-            }
-        };
-        let unused = (0..onsets.len()).filter(|n| !used(n)).map(|n| (n, why(n))).collect();
-        let evidence = chains.iter().map(|chain| chain.evidence).collect();
-        (!chains.is_empty()).then(|| Self { drops: chains.iter().map(of).collect(), evidence, unused })
-    }
 }
 
 impl Sound {
@@ -161,9 +113,9 @@ impl Sound {
     /// heard bouncing.
     pub fn read(name: &str, mut file: impl Read + Seek, part: Range<f64>) -> Result<Self, TableError> {
         let start = part.start.max(0.0);
-        let begin = |spec| Ear::new(spec, start);
-        let ear = wav::frames(name, &mut file, &(start..part.end), begin, |ear, frame| ear.push(frame))?;
-        Self::heard(name, start, ear, |around| {
+        let begin = |spec| Ears::new(spec, start);
+        let ears = wav::frames(name, &mut file, &(start..part.end), begin, |ears, frame| ears.push(frame))?;
+        Self::heard(name, start, ears, |around| {
             file.rewind().map_err(|error| wav::unread(name, &error))?;
             let begin = |spec: Spec| (Drawn::new(), spec.rate);
             let (drawn, rate) = wav::frames(name, file, around, begin, |(drawn, _), frame| drawn.frame(frame))?;
@@ -180,9 +132,9 @@ impl Sound {
             let says = format!("a sound of {rate} samples a second is not read");
             return Err(TableError::new(name, says).help("record at 44100 samples a second"));
         }
-        let mut ear = Ear::new(Spec { rate, channels: 1, step: f32::EPSILON }, 0.0);
-        samples.iter().for_each(|&x| ear.push(&[if x.is_finite() { x } else { 0.0 }]));
-        Self::heard(name, 0.0, ear, |around| {
+        let mut ears = Ears::new(Spec { rate, channels: 1, step: f32::EPSILON }, 0.0);
+        samples.iter().for_each(|&x| ears.push(&[if x.is_finite() { x } else { 0.0 }]));
+        Self::heard(name, 0.0, ears, |around| {
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
             // at the ends of its range it stays there
             let frame = |t: f64| ((t * f64::from(rate)).ceil() as usize).min(samples.len());
@@ -192,17 +144,16 @@ impl Sound {
         })
     }
 
-    /// The sound in which an ear has heard a ball; `draw` makes the wave of the part around it.
+    /// The sound in which ears hear a ball; `draw` makes the wave of the part around it.
     fn heard(
         name: &str,
         start: f64,
-        mut ear: Ear,
+        ears: Ears,
         draw: impl FnOnce(&Range<f64>) -> Result<Wave, TableError>,
     ) -> Result<Self, TableError> {
-        ear.end();
-        let onsets = std::mem::take(&mut ear.onsets);
-        let part = start..start + ear.seconds();
-        let Some(Bounced { drops, evidence, unused }) = Bounced::among(&onsets, false) else {
+        let (part, clipped) = (start..start + ears.seconds(), ears.clipped());
+        let Heard { onsets, bounced } = ears.heard();
+        let Some(Bounced { drops, evidence, unused }) = bounced else {
             return Err(nothing(name, &onsets, &part));
         };
         let contact = |&(n, number): &(usize, usize)| {
@@ -210,11 +161,10 @@ impl Sound {
             Contact { number, time, sigma }
         };
         let unused = unused.into_iter().map(|(n, why)| (onsets[n].time, why)).collect();
-        #[allow(clippy::cast_precision_loss)] // far below 2^52 frames
-        let clipped = ear.clipped as f64 / ear.frames.max(1) as f64;
+        let fades = drops.iter().map(|drop| Fade::of(&onsets, drop)).collect();
         let drops: Vec<Vec<Contact>> = drops.iter().map(|drop| drop.iter().map(contact).collect()).collect();
         let wave = draw(&around(&drops))?;
-        Ok(Self { name: name.to_owned(), part, drops, evidence, unused, clipped, wave })
+        Ok(Self { name: name.to_owned(), part, drops, evidence, fades, unused, clipped, wave })
     }
 
     /// The name of the file.
@@ -256,30 +206,6 @@ fn around(drops: &[Vec<Contact>]) -> Range<f64> {
     let (first, last) = (times().fold(f64::INFINITY, f64::min), times().fold(0.0, f64::max));
     let little = LITTLE * (last - first);
     (first - little).max(0.0)..last + little
-}
-
-/// Whether a sound begins with a contact, or so soon after it that it may be of it.
-fn follows(onset: &Onset, contact: &Onset) -> bool {
-    (0.0..RINGS).contains(&(onset.time - contact.time))
-}
-
-/// Whether the contacts of a chain may be those of a ball: for sure; if it is likely, where most
-/// sounds as loud between them are contacts; else if chance would not make more than one such
-/// chain, where most of all sounds are.
-fn is_believed(onsets: &[Onset], chain: &Chain) -> bool {
-    let contacts = || chain.at.iter().map(|&n| &onsets[n]);
-    let least = contacts().map(|contact| contact.power).fold(f32::INFINITY, f32::min);
-    let echoes = |onset: &Onset| contacts().any(|contact| follows(onset, contact) && onset.power <= contact.power);
-    let most = |onsets: &[Onset]| {
-        onsets.iter().filter(|onset| onset.power >= least && !echoes(onset)).count() < chain.at.len()
-    };
-    let between = &onsets[chain.at[0]..chain.at[chain.at.len() - 1]];
-    match chain.evidence {
-        SURE.. => true,
-        LIKELY.. => most(between),
-        0.0.. => most(onsets),
-        _ => false,
-    }
 }
 
 /// What is heard where no ball bounces.

@@ -6,9 +6,6 @@
 use super::wav::Spec;
 use crate::elementary::{cos, hypot, ln, sin};
 
-/// What counts is the sound above this frequency, Hz: hum of the mains and its first overtones, and
-/// steps, are below; the click of a contact goes to some thousand.
-const LOWEST: f64 = 200.0;
 /// Loudness is that of so long, s: the click of a contact rises within less than a millisecond.
 const GRAIN: f64 = 0.0005;
 /// A block, in grains: half a second. Noise that changes is found anew in each.
@@ -69,9 +66,10 @@ impl HighPass {
     }
 }
 
-/// The coefficients of the filter for so many samples a second.
-fn coefficients(rate: f64) -> [f64; 3] {
-    let w = std::f64::consts::TAU * LOWEST / rate;
+/// The coefficients of the filter that leaves what is above `lowest`, Hz, for so many samples a
+/// second.
+fn coefficients(lowest: f64, rate: f64) -> [f64; 3] {
+    let w = std::f64::consts::TAU * lowest / rate;
     let (cos, slope) = (cos(w), sin(w) / std::f64::consts::SQRT_2);
     [(1.0 + cos) / (2.0 * (1.0 + slope)), -2.0 * cos / (1.0 + slope), (1.0 - slope) / (1.0 + slope)]
 }
@@ -97,7 +95,7 @@ impl Block {
     }
 }
 
-/// What listens: frames go in, onsets come out.
+/// What listens above a frequency: frames go in, onsets come out.
 pub(super) struct Ear {
     rate: f64,
     start: f64,
@@ -119,7 +117,7 @@ pub(super) struct Ear {
 }
 
 impl Ear {
-    pub(super) fn new(Spec { rate, channels, step }: Spec, start: f64) -> Self {
+    pub(super) fn new(Spec { rate, channels, step }: Spec, start: f64, lowest: f64) -> Self {
         let rate = f64::from(rate);
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // rates are from 4000 to 768000
         let grain = (GRAIN * rate).round() as usize;
@@ -128,7 +126,7 @@ impl Ear {
             start,
             grain,
             least: step * step / 12.0,
-            coefficients: coefficients(rate),
+            coefficients: coefficients(lowest, rate),
             filters: vec![HighPass::default(); channels.into()],
             blocks: [Block::default(), Block::default()],
             samples: Vec::with_capacity(BLOCK * grain),

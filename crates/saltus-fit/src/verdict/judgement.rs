@@ -47,6 +47,12 @@ impl Cor {
     pub(crate) fn within(value: f64, low: f64, high: f64) -> Self {
         Self { value, standard_error: Some((high - low) / (2.0 * NORMAL)), low, high }
     }
+
+    /// Whether two CORs are surely of two balls: apart, intervals and all, and by more than one
+    /// ball changes from drop to drop.
+    pub(crate) fn is_apart(&self, other: &Self) -> bool {
+        (self.value - other.value).abs() > LEVEL && (self.low > other.high || other.low > self.high)
+    }
 }
 
 /// A share of less than this part of the interval is not named: without it the interval would be

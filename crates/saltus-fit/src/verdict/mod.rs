@@ -65,8 +65,12 @@ pub(crate) fn of_readings(
         };
         weigh::error_decides(&mut judgement, &compared.models, (kind, sigma), doubted);
     }
-    if let Some(wanted) = wanted {
-        weigh::rest_on(&mut judgement, wanted, compared);
+    let air = if wanted.is_none() && stated.drag.is_none() { weigh::air(fits, &compared.models) } else { None };
+    if let Some(model) = wanted.or(air.map(|_| CorModel::Drag)) {
+        weigh::rest_on(&mut judgement, model, compared);
+    }
+    if let Some(drag) = air {
+        judgement.note(FindingKind::AirShows { drag });
     }
     judgement
 }

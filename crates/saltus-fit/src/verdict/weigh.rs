@@ -4,8 +4,10 @@ use super::judgement::{Cor, Judgement, LEVEL};
 use crate::compare::rivals::Compared;
 use crate::elementary::hypot;
 use crate::finding::{Basis, Cause, Finding, FindingKind, Severity, Untried, Widening};
-use crate::quantity::{CorModel, Readings, Source, Sourced};
+use crate::model::LIGHT_DRAG;
+use crate::quantity::{CorModel, Measured, Readings, Source, Sourced};
 use crate::solve::choice::{Misfit, ModelChoice};
+use crate::solve::fits::Fits;
 use crate::statistics::{CLEAR, NORMAL, REJECT, WEAK};
 
 /// CORs that differ by less are the same for any purpose.
@@ -36,6 +38,20 @@ fn kind(model: &ModelChoice) -> Option<Kind> {
         CorModel::Each => Some(Kind::Each),
         CorModel::Constant | CorModel::ConstantDrag | CorModel::LinearDrag | CorModel::EachDrag => None,
     }
+}
+
+/// The drag, per metre, that times of contacts show: that of a ball, and a clearly better
+/// explanation than every other, so that the COR is the one beside it.
+///
+/// Flights in air shrink less and less, as no law of the COR makes them. By how much does not
+/// depend on the clock: k h is a number, and a clock that is slow only makes k another.
+pub(crate) fn air(fits: &Fits<'_>, list: &[ModelChoice]) -> Option<Measured> {
+    fits.times.as_ref().filter(|_| fits.heights.is_none())?;
+    let drag = list.iter().find(|model| model.name == CorModel::Drag && model.limit.is_none())?;
+    let one = list.iter().find(|model| model.chosen)?;
+    let clear = list.iter().filter(|model| model.name != CorModel::Drag).all(|model| drag.bic < model.bic - CLEAR);
+    let found = drag.drag.filter(|found| found.value - NORMAL * found.standard_error <= LIGHT_DRAG)?;
+    (clear && Open { one, allowed: None }.surely(drag)).then_some(found)
 }
 
 /// Notes models that fit better than one COR, or as well with another COR; doubts one COR where the
@@ -249,7 +265,6 @@ fn cause(kind: Kind, model: &ModelChoice) -> Cause {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::quantity::Measured;
     use crate::solve::choice::SpeedCor;
 
     fn model(name: CorModel, cor: f64, bic: f64, speeds: &[(f64, f64)]) -> ModelChoice {

@@ -11,6 +11,7 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 pub(crate) enum Kind {
     Clean,
     Noise,
+    Rumble,
     Echo,
     Ringing,
     VoiceBefore,
@@ -21,12 +22,14 @@ pub(crate) enum Kind {
     Talk,
     Music,
     Knocks,
+    Roll,
 }
 
 impl Kind {
-    pub(crate) const ALL: [Self; 12] = [
+    pub(crate) const ALL: [Self; 14] = [
         Self::Clean,
         Self::Noise,
+        Self::Rumble,
         Self::Echo,
         Self::Ringing,
         Self::VoiceBefore,
@@ -37,12 +40,14 @@ impl Kind {
         Self::Talk,
         Self::Music,
         Self::Knocks,
+        Self::Roll,
     ];
 
     pub(crate) fn about(self) -> &'static str {
         match self {
             Self::Clean => "clean",
             Self::Noise => "noise as loud as the later contacts",
+            Self::Rumble => "the rumble of a hall or a road, as loud as the contacts",
             Self::Echo => "two echoes, 20 to 200 ms later, of 0.05 to 0.4",
             Self::Ringing => "a ball that rings for 20 to 50 ms",
             Self::VoiceBefore => "a voice before the drop",
@@ -53,6 +58,7 @@ impl Kind {
             Self::Talk => "talk, and no ball",
             Self::Music => "music with a beat, and no ball",
             Self::Knocks => "knocks, and no ball",
+            Self::Roll => "a roll that grows faster and louder, and no ball",
         }
     }
 
@@ -62,6 +68,7 @@ impl Kind {
         match self {
             Self::Clean => [0.76, 0.0, 0.90],
             Self::Noise => [0.28, 0.08, 0.38],
+            Self::Rumble => [0.30, 0.20, 0.40],
             Self::Echo => [0.52, 0.12, 0.70],
             Self::Ringing => [0.56, 0.0, 0.78],
             Self::VoiceBefore => [0.56, 0.08, 0.80],
@@ -72,11 +79,12 @@ impl Kind {
             Self::Talk => [0.0, 1.0, 0.0],
             Self::Music => [0.0, 0.84, 0.0],
             Self::Knocks => [0.0, 0.92, 0.0],
+            Self::Roll => [0.0, 0.0, 0.0],
         }
     }
 
     pub(crate) fn has_ball(self) -> bool {
-        !matches!(self, Self::Talk | Self::Music | Self::Knocks)
+        !matches!(self, Self::Talk | Self::Music | Self::Knocks | Self::Roll)
     }
 }
 
@@ -217,6 +225,13 @@ pub(crate) fn make(kind: Kind, seed: u64) -> Made {
                 t += dice.from(0.05, 0.6);
             }
         }
+        Kind::Roll => {
+            let grows = dice.from(0.05, 0.15);
+            for (k, &(t, _)) in contacts.iter().enumerate() {
+                let size = 0.1 * (grows * k as f64).exp().min(8.0) * (0.2 * dice.normal()).exp();
+                click.add(&mut samples, per_second, (t, size), &mut dice);
+            }
+        }
         _ => {
             for &(t, v) in &contacts {
                 let size = 0.5 * v.powf(1.3) * (0.2 * dice.normal()).exp();
@@ -239,10 +254,18 @@ pub(crate) fn make(kind: Kind, seed: u64) -> Made {
     };
     let (hum, gain) =
         (dice.from(0.0, 0.02), if kind == Kind::Overdriven { dice.from(3.0, 10.0) } else { dice.from(0.2, 1.2) });
-    let mut low = 0.0;
+    let (mut low, mut lowest) = (0.0, [0.0; 3]);
+    let rumble = if kind == Kind::Rumble { dice.from(0.5, 2.0) } else { 0.0 };
+    let follows = 1.0 - (-TAU * 400.0 / per_second).exp();
     let recorded = samples.iter().enumerate().map(|(k, x)| {
         low = 0.98 * low + 0.2 * dice.normal();
         let rest = 0.7 * noise * (dice.normal() + low) + hum * (TAU * 50.0 * k as f64 / per_second).sin();
+        let mut next = if rumble > 0.0 { dice.normal() } else { 0.0 };
+        for stage in &mut lowest {
+            *stage += follows * (next - *stage);
+            next = *stage;
+        }
+        let rest = rest + rumble * next;
         ((gain * (x + rest)).clamp(-1.0, 1.0) * 32767.0).round() as f32 / 32768.0
     });
     let samples = recorded.collect();

@@ -56,6 +56,14 @@ pub(super) fn words(doubt: &Doubt) -> String {
         Doubt::Chance { contacts, once_in } => format!(
             "{contacts} sounds come ever sooner, as the contacts of a ball do; in one of {once_in} recordings like this other sounds do so by chance"
         ),
+        Doubt::Undying { lost_db, due_db } => {
+            let change =
+                if *lost_db < 0 { format!("louder by {} dB", -lost_db) } else { format!("fainter by {lost_db} dB") };
+            format!(
+                "the sounds come ever sooner, as the contacts of a ball do, but become {change}, where its impacts lose {due_db} dB: are they \
+                 those of a ball?"
+            )
+        }
         Doubt::Remark { text, line, change } => {
             let place = line.map_or_else(String::new, |line| format!("line {line}: "));
             format!("{place}'{text}': {}", remark(*change))

@@ -290,6 +290,10 @@ fn recordings(kind: &FindingKind) -> Option<String> {
                  and heights do"
             )
         }
+        FindingKind::AirShows { drag } => format!(
+            "the air shows in the times: flights that shrink less and less, as with a drag of {:.3} ± {:.3} /m; the COR is that of the contacts alone",
+            drag.value, drag.standard_error
+        ),
         FindingKind::DragHeld { drag_per_m } => format!("the readings are taken without the air, whose drag is stated: k = {drag_per_m:.3} /m"),
         FindingKind::KeepsAll => {
             "the ball keeps more of its speed than any ball does: what was tracked is no free flight, or the picture is bent".to_owned()
