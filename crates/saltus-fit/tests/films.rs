@@ -259,7 +259,6 @@ fn a_film_of_two_drops_is_of_both() {
 /// Two balls that are tracked in turn, now the one and now the other, are of no COR; a track that
 /// leaves one ball for what stands still, or for anything, is of that ball.
 #[test]
-#[ignore = "some films of two balls tracked in turn are still trusted, or a single ball is doubted"]
 fn a_film_of_two_balls_in_turn_is_doubted() {
     let ball = |drop: f64, release: f64, cor: fn(f64) -> f64| {
         Ball { drop, release, gravity: 9.81, drag: 0.0, cor, contact: Contact::Instant }.film(60.0, 2.8)

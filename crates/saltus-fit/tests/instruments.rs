@@ -398,7 +398,6 @@ fn stamps_of_samples_are_a_clock() {
 
 /// A clock beside places needs no name but its unit, and the rate of frames none at all.
 #[test]
-#[ignore = "a clock of a film without a name, or the rate of its frames, is not always found"]
 fn a_clock_of_a_film_needs_no_name() {
     let rows = noisy(&ball(|_| 0.72).film(60.0, 2.4), &mut Noise(10), 1e-3);
     let frames = |n: usize, (t, h): &(f64, f64)| format!("{n},{:.3},310.5,{:.2}", 1e3 * t, 800.0 - 600.0 * h);

@@ -126,11 +126,12 @@ pub enum Doubt {
         /// The trial.
         trial: String,
     },
-    /// Sounds were taken for contacts of a ball, and chance may have made them come as those do.
+    /// Sounds, or pulses of a sensor, were taken for contacts of a ball, and chance may have made
+    /// them come as those do.
     Chance {
         /// How many there are.
         contacts: usize,
-        /// Chance makes such a sound once in so many recordings like this.
+        /// Chance makes such contacts once in so many recordings like this.
         once_in: u64,
     },
     /// Sounds were taken for contacts of a ball, and do not grow fainter as those of a ball do.

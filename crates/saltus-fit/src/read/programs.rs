@@ -434,7 +434,11 @@ fn side_by_side<'a>(region: &Region<'a>) -> Option<Recognised<'a>> {
             let heading = Heading::parse(cell);
             run(cell).is_empty() && (heading.has(Atom::Frame) || heading.value().is_some_and(|v| v.what == What::Time))
         };
-        let trial = |run: &String| [Atom::Trial, Atom::Repeat].iter().any(|atom| Heading::parse(run).has(*atom));
+        // Before a mark stands whose they are, `Lab:Ball`.
+        let trial = |run: &String| {
+            let body = Heading::parse(run.rsplit(':').next().unwrap_or(run));
+            [Atom::Trial, Atom::Repeat].iter().any(|atom| body.has(*atom))
+        };
         let tracks = header.iter().any(clock) && !runs.iter().any(trial);
         return Some(Recognised { program: Some(Program::SideBySide), regions: regions.collect(), tracks });
     }

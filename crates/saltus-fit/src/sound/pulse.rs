@@ -52,8 +52,10 @@ pub(crate) struct Pulse {
     pub(crate) sigma: f64,
     /// How far it rises.
     pub(crate) peak: f64,
-    /// Whether it dies away other than it rose.
+    /// Whether it dies away other than it rose,
     dies: bool,
+    /// or swings: it falls and rises again before its end, as no contact does.
+    swings: bool,
     /// The part of its peak that it has at its edges,
     part: f64,
     /// and how wide it is at half of its peak, in parts of how wide it is at that of all.
@@ -117,10 +119,11 @@ impl Pulses {
         Self { pulses, noise, swings }
     }
 
-    /// Whether the pulses end as they begin, so that their ends tell how long they lasted.
+    /// Whether the pulses end as they begin, so that their ends tell how long they lasted: what
+    /// rings, as a table does that bears a phone, goes on when the ball has left.
     pub(crate) fn end(&self) -> bool {
-        let dying = self.pulses.iter().filter(|pulse| pulse.dies).count();
-        !self.swings && 2 * dying < self.pulses.len()
+        let ringing = self.pulses.iter().filter(|pulse| pulse.dies || pulse.swings).count();
+        !self.swings && 2 * ringing < self.pulses.len()
     }
 }
 
@@ -187,10 +190,14 @@ fn edges(step: f64, signal: &[f64], (from, to): (usize, usize), (noise, least): 
     let inside = || within.clone().map(|n| (seconds(step, n) - begin, signal[n]));
     let middle = inside().map(|(t, x)| t * x).sum::<f64>() / inside().map(|(_, x)| x).sum::<f64>() / (end - begin);
     let formed = within.clone().count() >= FORM;
+    // A sample of less than half of what is on either side of it.
+    let most = |samples: std::ops::RangeInclusive<usize>| samples.map(|n| signal[n]).fold(0.0, f64::max);
+    let dips = |n: usize| signal[n] < HALF * most(*within.start()..=n).min(most(n..=*within.end()));
+    let swings = formed && within.clone().any(dips);
     let (_, rose, fell, _) = crossed(HALF * peak);
     let width = (formed && edge <= EDGE * peak).then_some((fell - rose) / (end - begin));
     let sigma = hypot(step / 12f64.sqrt(), step * noise / slope.max(noise));
-    Pulse { begin, end, sigma, peak, dies: formed && !MIDDLE.contains(&middle), part: edge / peak, width }
+    Pulse { begin, end, sigma, peak, dies: formed && !MIDDLE.contains(&middle), swings, part: edge / peak, width }
 }
 
 /// The part of half a sine, raised to a power, that lies below a part of its peak at either side.
@@ -341,5 +348,14 @@ mod tests {
         let clicks = Made::of(|x| if x > 0.0 { (-2.0 * x).exp() * (60.0 * x).sin() } else { 0.0 });
         let clicks = Made { step: 2e-4, ..clicks }.found();
         assert!(clicks.pulses.len() == 8 && clicks.swings && !clicks.end());
+    }
+
+    /// The size of what swings is on one side, and rises and falls alike where it grows first.
+    #[test]
+    fn what_swings_tells_no_end() {
+        let rings = |x: f64| if x > 0.0 { (x * (1.0 - x)).max(0.0).sqrt() * ((9.0 * x).sin().abs() + 0.1) } else { 0.0 };
+        let found = Made::of(rings).found();
+        assert!(found.pulses.len() == 8 && !found.swings && !found.end(), "{found:?}");
+        assert!(found.pulses.iter().all(|pulse| !pulse.dies), "{found:?}");
     }
 }

@@ -8,6 +8,7 @@ use crate::evidence::{at, has};
 use crate::finding::{Basis, By, Finding, FindingKind, Severity, Widening};
 use crate::quantity::{Measured, Method, Readings, Source, Sourced};
 use crate::read::{Event, Reading};
+use crate::solve::bounces::BounceCor;
 use crate::solve::fits::Fits;
 use crate::statistics::{FAR as OUT, Line, SURELY};
 
@@ -17,6 +18,9 @@ const ADRIFT: usize = 3;
 /// The COR of the first flight, which needs gravity and the height of release, is shown where it is
 /// so many standard errors away.
 const FAR: f64 = 3.0;
+/// A trend of heights over which the COR changes by less than this is of no size, though readings
+/// that were worked out scatter by so little that it shows.
+const NOUGHT: f64 = 1e-3;
 
 /// Judges the fits of heights and times: the COR, and what speaks against it.
 pub(crate) fn judge(judgement: &mut Judgement, fits: &Fits<'_>, agreement: Option<&Agreement>) {
@@ -54,16 +58,18 @@ pub(crate) fn judge(judgement: &mut Judgement, fits: &Fits<'_>, agreement: Optio
 
 /// A COR that changes by little from flight to flight may be called one: the trend is worth a word,
 /// and the interval takes in both ends of it. What a trend of heights comes of, the comparison of
-/// models says.
+/// models says, unless it is of no size.
 fn small_trend(judgement: &mut Judgement, fits: &Fits<'_>) {
-    let cors = fits.bounces.iter().filter_map(|bounce| Some((bounce.bounce as f64, bounce.times?)));
-    let cors: Vec<(f64, Measured)> = cors.collect();
+    let high = fits.heights.is_some();
+    let cor = |bounce: &BounceCor| if high { bounce.heights } else { bounce.times };
+    let cors: Vec<(f64, Measured)> =
+        fits.bounces.iter().filter_map(|bounce| Some((bounce.bounce as f64, cor(bounce)?))).collect();
     let trend = |f: &&mut Finding| matches!(f.kind, FindingKind::Trend { .. }) && f.severity == Severity::Doubt;
-    let (Some(first), Some(last), None) = (cors.first(), cors.last(), &fits.heights) else { return };
+    let (Some(first), Some(last)) = (cors.first(), cors.last()) else { return };
     let Some(found) = judgement.findings.iter_mut().find(trend) else { return };
     let line = Line::through(cors.iter().map(|(n, cor)| (cor.standard_error.powi(-2), *n, cor.value)));
     let (first, last) = (line.at(first.0), line.at(last.0));
-    if (last - first).abs() <= LEVEL {
+    if (last - first).abs() <= if high { NOUGHT } else { LEVEL } {
         found.severity = Severity::Note;
         judgement.reach(first.min(last), first.max(last), Widening::EveryImpact);
     }

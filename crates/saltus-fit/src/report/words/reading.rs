@@ -50,11 +50,12 @@ pub(super) fn words(doubt: &Doubt) -> String {
             "the rows are taken for bounces one after the other, and the heights of '{trial}' rise along them: if they are, number them in a \
              column 'bounce'"
         ),
-        Doubt::Chance { contacts, once_in: 0 | 1 } => {
-            format!("{contacts} sounds come ever sooner, as the contacts of a ball do, and so do other sounds by chance")
-        }
+        Doubt::Chance { contacts, once_in: 0 | 1 } => format!(
+            "what was taken for {contacts} contacts comes ever sooner, as those of a ball do, and so does something else by chance"
+        ),
         Doubt::Chance { contacts, once_in } => format!(
-            "{contacts} sounds come ever sooner, as the contacts of a ball do; in one of {once_in} recordings like this other sounds do so by chance"
+            "what was taken for {contacts} contacts comes ever sooner, as those of a ball do; in one of {once_in} recordings like this \
+             something else does so by chance"
         ),
         Doubt::Undying { lost_db, due_db } => {
             let change =

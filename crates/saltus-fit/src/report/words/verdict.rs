@@ -273,7 +273,7 @@ fn recordings(kind: &FindingKind) -> Option<String> {
             100.0 * part_per_second
         ),
         FindingKind::AnotherBody { samples } => format!(
-            "{samples} samples that are no part of the motion are of one flight themselves: two bodies were tracked in turn; track one of them alone"
+            "{samples} samples that are no part of the motion are of flights themselves: two bodies were tracked in turn; track one of them alone"
         ),
         FindingKind::ManyWild { wild, samples } => {
             format!("{wild} of {samples} samples are outliers: look at the tracking")
