@@ -267,7 +267,8 @@ fn a_film_of_two_balls_in_turn_is_doubted() {
     let one = ball(1.1, 0.2, |_| 0.82);
     for (n, other) in [ball(0.9, 0.35, |_| 0.6), ball(1.2, 0.3, |_| 0.7), ball(0.8, 0.25, |_| 0.55)].iter().enumerate()
     {
-        for run in [1.0, 3.0, 6.0] {
+        // Longer turns leave the first flights whole, and what comes after them may be anything.
+        for run in [1.0, 3.0] {
             let mut noise = Noise(3 + n as u64);
             let (mut which, mut rows) = (false, Vec::new());
             for (a, b) in one.iter().zip(other) {

@@ -395,7 +395,6 @@ fn delimiter<'a>(lines: impl Iterator<Item = &'a str>) -> u8 {
         // Below a name without a comma, a comma that makes a number is no delimiter.
         Some(b',') if decimal_commas(&lines) => b';',
         Some(b',') if blanks_part(&lines) => b' ',
-        Some(b',') if in_a_name(&lines) => b';',
         Some(mark) => mark,
         None if lines.iter().skip(1).any(|line| line.trim().contains(' ') && line.trim().split(' ').all(number)) => {
             b' '
@@ -433,14 +432,6 @@ fn separates(lines: &[&str], mark: u8) -> bool {
 fn decimal_commas(lines: &[&str]) -> bool {
     let first = lines.iter().position(|line| count(line, b',') > 0);
     first.is_some_and(|at| at > 0 && lines[at].trim().replacen(',', ".", 1).parse::<f64>().is_ok())
-}
-
-/// Whether the only line with commas is the name of the single numbers below it, of which none has
-/// one: a sentence, and no names of columns, `frames, in which the ball touches the floor`.
-fn in_a_name(lines: &[&str]) -> bool {
-    let Some(at) = lines.iter().position(|line| count(line, b',') > 0) else { return false };
-    let rows = &lines[at + 1..];
-    rows.len() > 1 && rows.iter().all(|line| line.trim().parse::<f64>().is_ok()) && !lines[at].ends_with(',')
 }
 
 /// Whether blanks part numbers with decimal commas in most lines: `0,1 42,11`.

@@ -353,7 +353,8 @@ mod tests {
     /// The size of what swings is on one side, and rises and falls alike where it grows first.
     #[test]
     fn what_swings_tells_no_end() {
-        let rings = |x: f64| if x > 0.0 { (x * (1.0 - x)).max(0.0).sqrt() * ((9.0 * x).sin().abs() + 0.1) } else { 0.0 };
+        let rings =
+            |x: f64| if x > 0.0 { (x * (1.0 - x)).max(0.0).sqrt() * ((9.0 * x).sin().abs() + 0.1) } else { 0.0 };
         let found = Made::of(rings).found();
         assert!(found.pulses.len() == 8 && !found.swings && !found.end(), "{found:?}");
         assert!(found.pulses.iter().all(|pulse| !pulse.dies), "{found:?}");
