@@ -89,3 +89,16 @@ fn a_guard_that_has_leapt_as_the_run_starts_is_below_zero() {
         }
     }
 }
+
+/// A guard that is no number before its run begins is below zero for all that.
+#[test]
+fn a_guard_that_begins_with_the_run_is_below_zero() {
+    for start in [0.0, 1.0, 1e3] {
+        let model = Hybrid::new().mode("a", |_, _: &f64| 1.0).mode("b", |_, _| 0.0);
+        let model = model.switch("a", "b", move |t, _| (t - start).sqrt() - 0.6).entry(Entry::Fire);
+        for method in methods() {
+            let run = Simulation::of(&model).stepper(method).run("a", 0.0, start..start + 0.3).unwrap();
+            assert_eq!((run.end.mode, run.end.state), ("b", 0.0), "{start}");
+        }
+    }
+}

@@ -68,10 +68,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let near = x.with(|i| x.get(i) + by * f64::EPSILON * weight(i) * self.size(x, i));
             self.guard(edge, t + by * self.tick(t), &near)
         });
-        let bend = |k: usize| (values[k + 1] - 0.5 * (values[k] + values[k + 2])).abs();
-        let mut bends: [f64; SAMPLES - 2] = std::array::from_fn(|k| bend(k).min(f64::MAX));
+        let bend = |k: usize| finite((values[k + 1] - 0.5 * (values[k] + values[k + 2])).abs());
+        let mut bends: [f64; SAMPLES - 2] = std::array::from_fn(bend);
         bends.sort_unstable_by(f64::total_cmp);
-        bends[SAMPLES - 5]
+        bends[bends.len() - 3]
     }
 
     /// How far a guard below zero may be off: by rounding, and at the start of a run, which is
@@ -109,8 +109,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         for k in self.automaton.about(edge).read(x.len()) {
             self.memory.stats.guards += 1;
             let nudged = x.with(|i| if i == k { x.get(i) + by(i) } else { x.get(i) });
-            let change = (self.guard(edge, t, &nudged) - g).abs();
-            sum += if change.is_finite() { change } else { 0.0 };
+            sum += finite((self.guard(edge, t, &nudged) - g).abs());
         }
         sum
     }
@@ -127,8 +126,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     pub(super) fn time_rounding(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
         let change = |this: &mut Self, times: f64| {
             this.memory.stats.guards += 1;
-            let change = (this.guard(edge, t + times * FAR * this.tick(t), x) - g).abs();
-            if change.is_finite() { change } else { 0.0 }
+            finite((this.guard(edge, t + times * FAR * this.tick(t), x) - g).abs())
         };
         let once = change(self, 1.0);
         if once == 0.0 { 0.0 } else { steady([once, change(self, 2.0)]) / FAR }
@@ -145,8 +143,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             c[0].get(i) + TINY * part * part * higher
         });
         let guard = |x: &A::State| self.guard(edge, now.seconds(), x);
-        let bend = (guard(&bent) - guard(&c[0])).abs() / TINY;
-        if bend.is_finite() { bend } else { 0.0 }
+        finite((guard(&bent) - guard(&c[0])).abs() / TINY)
     }
 
     /// On the first step `c` of an arc: finds the edges that stay, for the flow runs along their
@@ -280,12 +277,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let size = self.size(x, k);
             let off = ROUNDINGS * self.options.tolerance.allowed(size, size);
             let nudged = x.with(|i| if i == k { x.get(i) + off } else { x.get(i) });
-            let change = (self.guard_rate(mode, edge, t, &nudged, by) - rate).abs();
-            noise += if change.is_finite() { change } else { 0.0 };
+            noise += finite((self.guard_rate(mode, edge, t, &nudged, by) - rate).abs());
         }
         let later = t + ROUNDINGS * self.tick(t);
-        let change = (self.guard_rate(mode, edge, later, x, by) - rate).abs();
-        noise += if change.is_finite() { change } else { 0.0 };
+        noise += finite((self.guard_rate(mode, edge, later, x, by) - rate).abs());
         if rate > noise {
             Carried::Up
         } else if rate < -noise {
@@ -440,6 +435,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             },
         );
     }
+}
+
+/// A change, or none where the guard is no number on the way.
+fn finite(change: f64) -> f64 {
+    if change.is_finite() { change } else { 0.0 }
 }
 
 /// The change over a way of a guard that changes over it, and over twice as long a way, by this
