@@ -111,7 +111,7 @@ proptest! {
 
     /// Frames of contacts with a floor, one below the other or in a line, below what they are.
     #[test]
-    fn frames_of_contacts_with_the_floor_are_times(e in 0.5f64..0.85, form in 0usize..6, in_line in any::<bool>()) {
+    fn frames_of_contacts_with_the_floor_are_times(e in 0.55f64..0.85, form in 0usize..6, in_line in any::<bool>()) {
         let (rate, name) = [
             ("240 fps", "Contact with the floor at frames"),
             ("240 images/s", "Contact avec le sol aux images"),

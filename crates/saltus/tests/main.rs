@@ -14,6 +14,8 @@ mod domain;
 mod entering;
 mod far;
 mod grazing;
+mod late;
+mod leaps;
 mod many_guards;
 mod many_walls;
 mod missed;

@@ -89,7 +89,7 @@ proptest! {
     }
 
     /// Two guards of time, or of a state, that fall `apart` spacings of numbers from each other:
-    /// each once, the earlier one first.
+    /// each once, the earlier one first, or of one instant the one listed first.
     #[test]
     fn falls_a_hair_apart_are_taken_once_each(first in 0.01..0.99_f64, apart in 0_u64..1500, swapped: bool) {
         let second = f64::from_bits(first.to_bits() + apart);
@@ -107,7 +107,7 @@ proptest! {
             .entry(Entry::Wait);
         for counter in [of_time, of_state] {
             for places in methods().map(|method| taken(&counter, method)) {
-                prop_assert!(places == order || apart < 2 && places == [0, 1], "{places:?} instead of {order:?}");
+                prop_assert!(places == order || apart <= 16 && places == [0, 1], "{places:?} instead of {order:?}");
             }
         }
     }

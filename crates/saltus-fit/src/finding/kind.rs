@@ -342,12 +342,12 @@ pub enum FindingKind {
         pixels: bool,
     },
     GainsSpeed,
-    /// The COR is that without the air, whose drag was stated.
     /// The times show the air, and the COR is that beside it.
     AirShows {
         /// Per metre.
         drag: Measured,
     },
+    /// The COR is that without the air, whose drag was stated.
     DragHeld {
         drag_per_m: f64,
     },

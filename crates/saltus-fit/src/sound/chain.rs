@@ -166,7 +166,7 @@ impl Listener<'_> {
         found.iter().map(again).collect()
     }
 
-    /// The sounds of which those of a chain are echoes, if they are: louder, and each as long before.
+    /// The sounds of which those of a chain are echoes, if so: louder, and each as long before.
     fn direct(&self, chain: Chain) -> Chain {
         let first = chain.at[0];
         let of = |delay: f64| {

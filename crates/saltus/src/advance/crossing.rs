@@ -4,10 +4,10 @@ use std::ops;
 
 use crate::automaton::Automaton;
 use crate::automaton::refusal::guard_undefined;
-use crate::certainty::{FAR, FEW, ROUGHLY, SURELY};
+use crate::certainty::{FAR, FEW, ROUGHLY, SMALL, SURELY};
 use crate::cross::{
-    Crossing, FirstFall, Powers, SAMPLES, Searched, Start, Undefined, first_fall_of_polynomial, first_fall_on_step,
-    settle, stay_clear,
+    AT_START, Crossing, FirstFall, Powers, SAMPLES, Searched, Start, Undefined, first_fall_of_polynomial,
+    first_fall_on_step, settle, stay_clear,
 };
 use crate::error::Error;
 use crate::inspection::Inspection;
@@ -19,7 +19,9 @@ use crate::time::{Time, resolution};
 
 use super::Advance;
 use super::affine::Along;
+use super::memory::CROWDED;
 use super::near::Near;
+use super::noise::Carried;
 use super::shared::{Shared, Step};
 
 impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
@@ -123,8 +125,18 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             None => {
                 // Where the arc ends before, it is looked at there: another edge may be due at
                 // once.
-                if let (Some(edge), None) = (spent, &found) {
-                    self.stays_in(mode, edge, (now, &c[0]), (now.after(limit), &step.at(limit)))?;
+                if let (Some(edge), None) = (spent, &found)
+                    && let Err(fell_on) = self.stays_in(mode, edge, (now, &c[0]), (now.after(limit), &step.at(limit)))
+                {
+                    // One that falls from rest, as far as noise shows, has come to its wall again.
+                    let soon = self.on(edge, step, SMALL * limit).abs();
+                    if soon > ROUGHLY * self.on(edge, step, limit).abs()
+                        || self.carried(mode, edge, now.seconds(), &c[0], step.size) != Carried::Along
+                    {
+                        return Err(fell_on);
+                    }
+                    let crossing = Crossing::at_start(limit * AT_START);
+                    return Ok(Some(OnStep { edge, crossing, near: None, slope: None }));
                 }
                 Ok(found)
             }
@@ -244,7 +256,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             short && resolved && before == 0.0 && !(by_formula && again) && self.hides(edge, now, root, &at, &state);
         self.memory.hidden = if hidden { self.memory.hidden + 1 } else { 0 };
         let doubtful = self.memory.last == Some(edge) && (hidden || short && !resolved && !by_formula);
-        self.memory.spurious = doubtful && self.rises(edge, now, root, &at);
+        let crowded = before + root <= FEW * resolution(t) && self.time_rounding(edge, t, &state, g) > 0.0;
+        self.memory.crowded = if crowded { self.memory.crowded + 1 } else { 0 };
+        self.memory.spurious = doubtful && self.rises(edge, now, root, &at) || self.memory.crowded >= CROWDED;
         Close { span, time, state }
     }
 

@@ -138,7 +138,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         // A flow that is no number here says nothing.
         let rounding = if slope.is_nan() { still } else { slope.abs() * self.tick(t) + still };
         if -g <= ROUNDINGS * rounding || -g <= FEW * self.scatter(edge, t, x) {
-            let sure = slope.abs() * self.glance() > SURELY * rounding;
+            let sure = slope.abs() * self.glance(mode, t, x) > SURELY * rounding;
             let leaves = sure && (slope < 0.0 || straight);
             if !spent && !leaves && matches!(self.automaton.falls(mode, edge, t, x), Fall::Unknown) {
                 self.memory.at_wall(edge, g);
@@ -151,6 +151,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         match self.automaton.about(edge).entry {
             // What fell as the run starts was before it, as a tick there is.
             _ if self.memory.last.is_some() && self.fell_at_stop(edge, x).is_some() => Ok(true),
+            // One that leaps above zero within rounding is entered there.
+            Entry::Refuse if !spent && self.shortly(mode, edge, t, x) > 0.0 => {
+                self.unspend(edge);
+                Ok(false)
+            }
             Entry::Refuse => Err(Error::new(ErrorKind::Entry, Place::new(t, mode, Some(edge), x))),
             Entry::Fire => Ok(true),
             Entry::Wait => {
@@ -181,15 +186,14 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if g > 0.0 {
             let still = self.still(edge, t, after, g);
             let slope = self.guard_slope(to, edge, t, after, g, still);
-            if g > SURELY * (slope.abs() * self.tick(t) + still) && !self.leaps_ahead(to, edge, t, after) {
+            if g > SURELY * (slope.abs() * self.tick(t) + still) && self.shortly(to, edge, t, after) >= 0.0 {
                 self.unspend(edge);
             }
         }
     }
 
-    /// Whether a guard that leapt at the last crossing does so on the way from `x` as well, within
-    /// the rounding of time and state: a reset of other coordinates has not led away from there.
-    fn leaps_ahead(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State) -> bool {
+    /// The guard of `edge` on the way from `x` beyond the rounding of time and state.
+    fn shortly(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State) -> f64 {
         let slope = self.flow(mode, t, x);
         let by = FAR * self.tick(t);
         let ahead = x.with(|i| {
@@ -197,7 +201,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             if rate == 0.0 { x.get(i) } else { x.get(i) + (by * rate.abs() + rounding).copysign(rate) }
         });
         self.memory.stats.guards += 1;
-        self.guard(edge, t + by, &ahead) < 0.0
+        self.guard(edge, t + by, &ahead)
     }
 
     /// Whether a guard that went on falling from its spent root, by no more than the rounding of
@@ -232,7 +236,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let Wall { edge, level, .. } = self.memory.walls[k];
             let still = self.still(edge, t, x, level);
             let slope = self.guard_slope(mode, edge, t, x, level, still);
-            let longest = self.glance().max(FAR * self.tick(t));
+            let longest = self.glance(mode, t, x).max(FAR * self.tick(t));
             if slope < 0.0 && -slope * longest > ROUNDINGS * still {
                 self.memory.slack = FEW * level.abs();
                 return Some(edge);
@@ -241,10 +245,17 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         None
     }
 
-    /// The longest time over which a guard's slope is looked at: a part of the last arc's duration,
-    /// or of a second where there was none.
-    fn glance(&self) -> f64 {
-        if self.memory.last_duration > 0.0 { TINY * self.memory.last_duration } else { TINY }
+    /// The longest time over which a guard's slope is looked at: a part of the last arc's duration;
+    /// where there was none, of a second, or of the time in which a coordinate changes by its own
+    /// size, if all take longer.
+    fn glance(&mut self, mode: A::Mode, t: f64, x: &A::State) -> f64 {
+        if self.memory.last_duration > 0.0 {
+            return TINY * self.memory.last_duration;
+        }
+        let slope = self.flow(mode, t, x);
+        let times = (0..x.len()).filter(|&i| slope.get(i) != 0.0).map(|i| (x.get(i) / slope.get(i)).abs());
+        let least = times.fold(f64::INFINITY, f64::min);
+        TINY * if least < f64::INFINITY { least.max(1.0) } else { 1.0 }
     }
 
     /// dg/dt along the flow.
@@ -270,7 +281,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     fn leaving(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State, g: f64, rounding: f64) -> Leaving {
         let spacing = self.tick(t);
         // An arc may be as short as rounding, over which nothing changes.
-        let longest = self.glance().max(FAR * spacing);
+        let longest = self.glance(mode, t, x).max(FAR * spacing);
         let slope = self.flow(mode, t, x);
         if self.automaton.about(edge).affine && self.smooth.within(t + longest) == t + longest {
             self.memory.stats.guards += 1;

@@ -32,6 +32,9 @@ pub(super) struct Wall<E> {
     pub(super) stays: bool,
     /// Whether the flow leads down from it, beyond what rounding shows: the edge is taken at once.
     pub(super) falls: bool,
+    /// Whether the flow leads up from it by and by, at a rate that is none at first as far as noise
+    /// shows: its zero is spent.
+    pub(super) rises: bool,
 }
 
 /// So few edges at a time lie at their walls, or go on falling, in most systems: a list of no more
@@ -41,6 +44,11 @@ const FEW_EDGES: usize = 4;
 /// So many arcs in a row whose durations rounding spoils have accumulated: one may be short by
 /// chance.
 const IN_A_ROW: u32 = 3;
+
+/// So many arcs in a row no longer than a few spacings of time make no headway: a guard that moves
+/// with time has but those few values on each.
+/// Held by `late::a_plastic_ball_on_a_table_rests`.
+pub(super) const CROWDED: u32 = 64;
 
 /// A list of edges, of any length.
 pub(super) type Few<T> = SmallVec<[T; FEW_EDGES]>;
@@ -54,7 +62,8 @@ pub(crate) struct Memory<E, S> {
     /// last exactly zero: the largest of |xᵢ| at the start of an arc and of |xᵢ'| times its
     /// duration.
     pub(super) largest: Option<S>,
-    /// x' at the start of an arc that ends at a crossing.
+    /// How fast each coordinate changes over an arc that ends at a crossing: by x' at its start,
+    /// and by what the coordinate was as the last piece began.
     pub(super) slope: Option<S>,
     pub(super) controller: Controller,
     pub(super) gait: Gait,
@@ -78,6 +87,9 @@ pub(crate) struct Memory<E, S> {
     /// How many arcs in a row, up to the last one, were so short that the rounding of a guard
     /// spoils their duration.
     pub(super) hidden: u32,
+    /// How many arcs in a row, up to the last one, no longer than a few spacings of time, ended by
+    /// a guard that moves with time itself.
+    pub(super) crowded: u32,
     /// How many arcs there were.
     pub(super) arcs: u64,
     /// How many steps there were before this arc.
@@ -126,6 +138,7 @@ impl<E: Copy + PartialEq, S: State> Memory<E, S> {
             last_duration: 0.0,
             longest_duration: 0.0,
             hidden: 0,
+            crowded: 0,
             arcs: 0,
             steps_before: 0,
             resolved: false,
@@ -146,7 +159,7 @@ impl<E: Copy + PartialEq, S: State> Memory<E, S> {
     /// The guard of `edge` is zero as the mode is entered, but for rounding, which has left `g` of
     /// it.
     pub(super) fn at_wall(&mut self, edge: E, g: f64) {
-        self.walls.push(Wall { edge, level: g, stays: false, falls: false });
+        self.walls.push(Wall { edge, level: g, stays: false, falls: false, rises: false });
     }
 
     #[cold]
@@ -163,6 +176,18 @@ impl<E: Copy + PartialEq, S: State> Memory<E, S> {
     #[inline]
     pub(super) fn cut(&mut self, longest: f64) {
         self.step = self.step.map(|step| step.min(longest));
+    }
+
+    /// An arc ends that began with this `slope`, and lasted so long `before` its last piece, which
+    /// began at `x`, and `after`: what a coordinate was there it was summed up from as well.
+    #[inline]
+    pub(super) fn set_out(&mut self, slope: Option<S>, (before, after): (f64, f64), x: &S) {
+        self.slope = match slope {
+            Some(slope) if before > 0.0 => {
+                Some(slope.with(|i| larger(slope.get(i).abs(), x.get(i).abs() / (before + after))))
+            }
+            slope => slope,
+        };
     }
 
     /// An arc from `x` that took time has ended.

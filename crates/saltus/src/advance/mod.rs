@@ -386,7 +386,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// How the search for `edge` starts on the first piece of an arc.
     #[inline]
     fn start(&self, edge: A::Edge, first: bool) -> Start {
-        if first && self.memory.spent_as(edge).is_some() { Start::Spent } else { Start::Open }
+        let spent = || self.memory.spent_as(edge).is_some() || self.memory.wall(edge).is_some_and(|wall| wall.rises);
+        if first && spent() { Start::Spent } else { Start::Open }
     }
 
     /// What rounding has left of the guard of `edge` on the first piece of an arc, if it is zero

@@ -27,8 +27,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         self.moved(edge, t, x, g, &|i| TINY * sizes.get(i).abs()) * (f64::EPSILON / TINY)
     }
 
-    /// What the coordinates of `x` were summed up from: max(|xᵢ|, |xᵢ| at the start of an arc,
-    /// |xᵢ'| times its duration), over the arcs since it was last exactly zero.
+    /// What the coordinates of `x` were summed up from: max(|xᵢ|, |xᵢ| at the start of an arc and
+    /// of its last piece, |xᵢ'| times its duration), over the arcs since it was last exactly zero.
     ///
     /// A coordinate that is a rounding of what it was has the rounding of what it was, until a
     /// reset gives it anew. At the start of a run nothing was summed up: |xᵢ|.
@@ -58,7 +58,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     }
 
     /// How far a guard scatters by its own arithmetic: how far its values at times and states some
-    /// roundings apart are from a line, as those of a cosine of many turns are.
+    /// roundings apart are from a line, as those of a cosine of many turns are. A single leap among
+    /// them, off a line by two, is none.
     #[cold]
     pub(super) fn scatter(&mut self, edge: A::Edge, t: f64, x: &A::State) -> f64 {
         self.memory.stats.guards += SAMPLES as u64;
@@ -67,15 +68,21 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let near = x.with(|i| x.get(i) + by * f64::EPSILON * weight(i) * self.size(x, i));
             self.guard(edge, t + by * self.tick(t), &near)
         });
-        let bend = |three: &[f64]| (three[1] - 0.5 * (three[0] + three[2])).abs();
-        values.windows(3).map(bend).filter(|bend| bend.is_finite()).fold(0.0, f64::max)
+        let bend = |k: usize| finite((values[k + 1] - 0.5 * (values[k] + values[k + 2])).abs());
+        let mut bends: [f64; SAMPLES - 2] = std::array::from_fn(bend);
+        bends.sort_unstable_by(f64::total_cmp);
+        bends[bends.len() - 3]
     }
 
     /// How far a guard below zero may be off: by rounding, and at the start of a run, which is
     /// stated to within the absolute tolerance, by that.
     pub(super) fn entry_error(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
         let absolute = self.options.tolerance.absolute;
-        let stated = if self.memory.largest.is_none() { self.moved(edge, t, x, g, &|_| absolute) } else { 0.0 };
+        let stated = if self.memory.largest.is_none() {
+            steady([1.0, 2.0].map(|times| self.moved(edge, t, x, g, &|_| times * absolute)))
+        } else {
+            0.0
+        };
         self.still(edge, t, x, g) + stated
     }
 
@@ -102,8 +109,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         for k in self.automaton.about(edge).read(x.len()) {
             self.memory.stats.guards += 1;
             let nudged = x.with(|i| if i == k { x.get(i) + by(i) } else { x.get(i) });
-            let change = (self.guard(edge, t, &nudged) - g).abs();
-            sum += if change.is_finite() { change } else { 0.0 };
+            sum += finite((self.guard(edge, t, &nudged) - g).abs());
         }
         sum
     }
@@ -118,10 +124,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// How far rounding the time may move a guard that moves by itself: |∂g/∂t| ticks, measured
     /// over some of them.
     pub(super) fn time_rounding(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> f64 {
-        self.memory.stats.guards += 1;
-        let ahead = t + FAR * self.tick(t);
-        let change = (self.guard(edge, ahead, x) - g).abs() / FAR;
-        if change.is_finite() { change } else { 0.0 }
+        let change = |this: &mut Self, times: f64| {
+            this.memory.stats.guards += 1;
+            finite((this.guard(edge, t + times * FAR * this.tick(t), x) - g).abs())
+        };
+        let once = change(self, 1.0);
+        if once == 0.0 { 0.0 } else { steady([once, change(self, 2.0)]) / FAR }
     }
 
     /// How far the guard bends along a dense output up to `limit`: by its powers from the second
@@ -135,8 +143,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             c[0].get(i) + TINY * part * part * higher
         });
         let guard = |x: &A::State| self.guard(edge, now.seconds(), x);
-        let bend = (guard(&bent) - guard(&c[0])).abs() / TINY;
-        if bend.is_finite() { bend } else { 0.0 }
+        finite((guard(&bent) - guard(&c[0])).abs() / TINY)
     }
 
     /// On the first step `c` of an arc: finds the edges that stay, for the flow runs along their
@@ -234,10 +241,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 // A guard that falls or rises as a power of time does so within a small part of
                 // the step.
                 let s = ROUGHLY * size;
-                wall.stays = rate.abs() <= rounding
-                    && this.carried(mode, edge, step.time(s), &step.at(s), size) == Carried::Along;
+                let soon = this.carried(mode, edge, step.time(s), &step.at(s), size);
+                wall.stays = rate.abs() <= rounding && soon == Carried::Along;
                 let spent = this.memory.spent_as(edge).is_some();
-                wall.falls = !spent && rate < -rounding && this.falls_at_once(mode, edge, (t, x), by, (rate, rounding));
+                let sinks = !spent && rate < -rounding;
+                wall.rises = sinks && soon == Carried::Up && this.carried(mode, edge, t, x, size) == Carried::Along;
+                wall.falls = sinks && !wall.rises && this.falls_at_once(mode, edge, (t, x), by, (rate, rounding));
                 wall.stays || !spent
             },
         );
@@ -260,16 +269,18 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// rounding and the error of a step of size `h` leave open.
     ///
     /// What the dense output does is not asked: along a surface that the flow keeps, it drifts.
-    fn carried(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State, h: f64) -> Carried {
+    pub(super) fn carried(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State, h: f64) -> Carried {
         let by = SMALL * h;
         let rate = self.guard_rate(mode, edge, t, x, by);
         let mut noise = self.rate_rounding(edge, t, x, by);
         for k in 0..x.len() {
-            let off = ROUNDINGS * self.options.tolerance.allowed(x.get(k), x.get(k));
+            let size = self.size(x, k);
+            let off = ROUNDINGS * self.options.tolerance.allowed(size, size);
             let nudged = x.with(|i| if i == k { x.get(i) + off } else { x.get(i) });
-            let change = (self.guard_rate(mode, edge, t, &nudged, by) - rate).abs();
-            noise += if change.is_finite() { change } else { 0.0 };
+            noise += finite((self.guard_rate(mode, edge, t, &nudged, by) - rate).abs());
         }
+        let later = t + ROUNDINGS * self.tick(t);
+        noise += finite((self.guard_rate(mode, edge, later, x, by) - rate).abs());
         if rate > noise {
             Carried::Up
         } else if rate < -noise {
@@ -426,6 +437,17 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     }
 }
 
+/// A change, or none where the guard is no number on the way.
+fn finite(change: f64) -> f64 {
+    if change.is_finite() { change } else { 0.0 }
+}
+
+/// The change over a way of a guard that changes over it, and over twice as long a way, by this
+/// much: a leap on the first half is no part of it.
+fn steady([once, twice]: [f64; 2]) -> f64 {
+    once.min((twice - once).abs())
+}
+
 /// Neighbouring times of a step between which something turns that holds at its `limit`, and not
 /// at its start.
 fn neighbours_of<S: State>(step: Step<'_, S>, limit: f64, mut holds: impl FnMut(f64) -> bool) -> [f64; 2] {
@@ -439,7 +461,7 @@ fn neighbours_of<S: State>(step: Step<'_, S>, limit: f64, mut holds: impl FnMut(
 
 /// Where the flow carries a guard.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Carried {
+pub(super) enum Carried {
     Up,
     Down,
     Along,

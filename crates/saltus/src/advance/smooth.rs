@@ -38,6 +38,12 @@ impl Smooth {
         Ok(Self { from, until: if stop < f64::INFINITY { stop.next_down() } else { stop }, stop })
     }
 
+    /// The time `to`, or the last one before the first stop after `from`.
+    pub(crate) fn before_stop(stops: &[Clock], from: f64, to: f64) -> f64 {
+        let next = |clock: &Clock| tick(clock, from.next_up()).ok().flatten();
+        stops.iter().filter_map(next).map(f64::next_down).fold(to, f64::min)
+    }
+
     /// The time at which the flow is asked for instead of `t`.
     #[inline]
     pub(crate) fn within(&self, t: f64) -> f64 {

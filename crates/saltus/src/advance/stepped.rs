@@ -199,7 +199,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         remaining: f64,
         observer: &mut impl Observer<A>,
     ) -> ArcEnd<A> {
-        self.memory.slope = self.set_out.take();
+        let pieces = (now.since(self.began), found.crossing.root);
+        self.memory.set_out(self.set_out.take(), pieces, &c[0]);
         let close = self.close((found.edge, found.crossing), now, |s| found.at(c, scale, s), remaining, false);
         self.memory.before = slope.map(|slope| (close.state.clone(), slope));
         let told = if close.span > 0.0 {

@@ -308,8 +308,10 @@ impl<T: TwoSided> Filippov<T> {
         if !agree(above, below) {
             return false;
         }
-        let ahead = if t == 0.0 { AHEAD } else { AHEAD * t.abs() };
-        let (t, x) = (t + ahead, x.with(|i| x.get(i) + ahead * above.get(i)));
+        // No farther than to the next stop, in which another brake may be applied.
+        let far = t + if t == 0.0 { AHEAD } else { AHEAD * t.abs() };
+        let then = Smooth::before_stop(self.system.stops(), t, far);
+        let (t, x) = (then, x.with(|i| x.get(i) + (then - t) * above.get(i)));
         agree(&self.system.above(t, &x), &self.system.below(t, &x))
     }
 
@@ -323,6 +325,9 @@ impl<T: TwoSided> Filippov<T> {
         // Weighted like this, a coordinate that both flows hold against each other stands still
         // exactly.
         let (up, down, gap) = (up + pull, down + pull, down - up);
+        if gap == 0.0 {
+            return above; // neither moves h beside the other
+        }
         x.with(|i| (down * above.get(i) - up * below.get(i)) / gap)
     }
 
