@@ -50,11 +50,14 @@ pub(crate) fn student(freedom: usize) -> f64 {
 }
 
 /// The probability of a ratio of variances at least this large by chance, on `above` over `below`
-/// degrees of freedom.
+/// degrees of freedom; none of an infinite one, over no variance at all.
 #[allow(clippy::cast_precision_loss)]
 pub(crate) fn variance_ratio_p(ratio: f64, above: usize, below: usize) -> Option<f64> {
-    if above == 0 || below == 0 || !ratio.is_finite() || ratio < 0.0 {
+    if above == 0 || below == 0 || ratio.is_nan() || ratio < 0.0 {
         return None;
+    }
+    if ratio.is_infinite() {
+        return Some(0.0);
     }
     let p = FisherSnedecor::new(above as f64, below as f64).ok()?.sf(ratio);
     p.is_finite().then_some(p.clamp(0.0, 1.0))

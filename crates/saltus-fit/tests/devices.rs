@@ -200,13 +200,14 @@ proptest! {
         prop_assert!(near(trusted(&text), e, 0.01), "{e} {}", fit(&text));
     }
 
-    /// Speeds of a ball in flight, upwards and downwards alike or not, none below what a radar sees.
+    /// Speeds of a ball in flight, upwards and downwards alike or not, none below what a radar sees;
+    /// so often that six of them tell the third flight.
     #[test]
     fn the_speed_of_a_ball_tells_its_contacts(
-        e in 0.6f64..0.88,
+        e in 0.65f64..0.88,
         form in 0usize..4,
         dead in 0.0f64..0.35,
-        rate in 40.0f64..120.0,
+        rate in 50.0f64..120.0,
         seed in 0u64..100,
     ) {
         let ball = Ball { cor: e, at: 0.4, speed: 5.2, lasts: 0.006 };

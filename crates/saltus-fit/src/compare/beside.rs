@@ -7,6 +7,7 @@ use crate::finding::{Finding, FindingKind, Untried};
 use crate::model::{Contacts, FlightTrial, Heights};
 use crate::quantity::{self, CorModel, Loss, Source};
 use crate::solve::fits::Fits;
+use crate::solve::kind::Each;
 use crate::solve::one::OneKind;
 use crate::statistics::{REJECT, rounding};
 
@@ -24,12 +25,12 @@ impl Fits<'_> {
     /// Whether drops differ for another cause than the height they fall from: then no model of the
     /// speed can be distinguished from that cause.
     fn drops_differ(&self, cor: f64) -> bool {
-        let of = |spread: Option<f64>, separate: &[(f64, f64)]| {
-            let settings = differ(self.table.trials(), separate, cor).is_some_and(|d| d.p < REJECT);
+        let of = |spread: Option<f64>, each: Each<'_>| {
+            let settings = differ(self.table.trials(), each, cor).is_some_and(|d| d.p < REJECT);
             if settings { !self.set_by_height() } else { spread.is_some() }
         };
-        self.heights.as_ref().is_some_and(|k| of(k.spread, &k.separate))
-            || self.times.as_ref().is_some_and(|k| of(k.spread, &k.separate))
+        self.heights.as_ref().is_some_and(|k| of(k.spread, k.each()))
+            || self.times.as_ref().is_some_and(|k| of(k.spread, k.each()))
             || self.joint.as_ref().is_some_and(|j| j.spread.is_some())
     }
 

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::elementary::ln;
 use crate::read::{Event, Trial};
+use crate::solve::kind::Each;
 use crate::statistics::{Line, REJECT, SPARE, TREND, chi_square_p, variance_ratio_p};
 
 /// Release heights that differ by less, as a part of them, are one.
@@ -25,26 +26,24 @@ pub(crate) struct Differ {
 /// Analysis of variance of the trials' own CORs by setting, each weighing by its information;
 /// `None` for a single setting.
 ///
-/// `separate` holds, trial by trial, the information on the COR and the trial's own COR less `cor`.
-#[allow(clippy::cast_precision_loss)]
-pub(crate) fn differ(trials: &[Trial], separate: &[(f64, f64)], cor: f64) -> Option<Differ> {
-    differ_by(trials, separate, cor, |trial| Some(&trial.setting))
+pub(crate) fn differ(trials: &[Trial], each: Each<'_>, cor: f64) -> Option<Differ> {
+    differ_by(trials, each, cor, |trial| Some(&trial.setting))
 }
 
 /// A column that was left aside, and how the CORs differ by what stands in it: that with the least
 /// probability by chance. Its values have to repeat, so that the trials of one value tell their own
 /// scatter. Beside such columns a condition is looked at that is another in every row: the CORs may
 /// follow its numbers.
-pub(crate) fn differ_beside(trials: &[Trial], separate: &[(f64, f64)], cor: f64) -> Option<(String, Differ)> {
+pub(crate) fn differ_beside(trials: &[Trial], each: Each<'_>, cor: f64) -> Option<(String, Differ)> {
     let all = |of: fn(&Trial) -> &[(String, String)]| -> BTreeSet<&str> {
         trials.iter().flat_map(|trial| of(trial).iter().map(|(name, _)| &**name)).collect()
     };
     let conditions = all(|trial| &trial.conditions).into_iter().filter_map(|name| {
-        let found = follow(trials, separate, cor, |trial| cell(&trial.conditions, name))?;
+        let found = follow(trials, each, cor, |trial| cell(&trial.conditions, name))?;
         Some((name.to_owned(), found))
     });
     let found = all(|trial| &trial.beside).into_iter().filter_map(|name| {
-        let differ = differ_by(trials, separate, cor, |trial| cell(&trial.beside, name))?;
+        let differ = differ_by(trials, each, cor, |trial| cell(&trial.beside, name))?;
         (differ.spare > 0).then(|| (name.to_owned(), differ))
     });
     found.chain(conditions).min_by(|a, b| a.1.p.total_cmp(&b.1.p))
@@ -61,7 +60,7 @@ fn cell<'a>(cells: &'a [(String, String)], name: &str) -> Option<&'a str> {
 #[allow(clippy::cast_precision_loss)]
 fn follow<'a>(
     trials: &'a [Trial],
-    separate: &[(f64, f64)],
+    each: Each<'_>,
     cor: f64,
     key: impl Fn(&'a Trial) -> Option<&'a str>,
 ) -> Option<Differ> {
@@ -69,12 +68,12 @@ fn follow<'a>(
         let cell = key(trial)?;
         Some((cell, (s.0, leading(cell)?, s.1)))
     };
-    let weighing = trials.iter().zip(separate).filter(|(_, s)| s.0 > 0.0);
+    let weighing = trials.iter().zip(each.own).filter(|(_, s)| s.0 > 0.0);
     let mut points: Vec<(&str, Point)> = weighing.map(point).collect::<Option<_>>()?;
     points.sort_by(|a, b| a.1.1.total_cmp(&b.1.1));
     let spare = points.len().checked_sub(2).filter(|spare| *spare > 0)?;
     let line = Line::through(points.iter().map(|point| point.1));
-    let p = by_chance(&line, spare)?;
+    let p = by_chance(&line, spare, each.least)?;
     let at = |(cell, point): &(&str, Point)| ((*cell).to_owned(), cor + line.at(point.1));
     let (first, last) = (at(points.first()?), at(points.last()?));
     let (low, high) = if first.1 < last.1 { (first, last) } else { (last, first) };
@@ -82,10 +81,10 @@ fn follow<'a>(
 }
 
 /// The probability of a slope like that of a line by chance, where the scatter about it has so much
-/// `freedom`.
+/// `freedom`, and a variance of no less than `least`.
 #[allow(clippy::cast_precision_loss)]
-fn by_chance(line: &Line, freedom: usize) -> Option<f64> {
-    let about = (line.all - line.explained).max(1e-300) / freedom as f64;
+fn by_chance(line: &Line, freedom: usize, least: f64) -> Option<f64> {
+    let about = ((line.all - line.explained) / freedom as f64).max(least);
     variance_ratio_p(line.explained / about, 1, freedom)
 }
 
@@ -97,12 +96,12 @@ fn leading(cell: &str) -> Option<f64> {
 
 fn differ_by<'a>(
     trials: &'a [Trial],
-    separate: &[(f64, f64)],
+    each: Each<'_>,
     cor: f64,
     key: impl Fn(&'a Trial) -> Option<&'a str>,
 ) -> Option<Differ> {
     let mut settings: BTreeMap<&str, (f64, f64, f64, usize)> = BTreeMap::new();
-    for (trial, &(weight, shift)) in trials.iter().zip(separate).filter(|(_, s)| s.0 > 0.0) {
+    for (trial, &(weight, shift)) in trials.iter().zip(each.own).filter(|(_, s)| s.0 > 0.0) {
         let sums = settings.entry(key(trial)?).or_default();
         *sums = (sums.0 + weight, sums.1 + weight * shift, sums.2 + weight * shift * shift, sums.3 + 1);
     }
@@ -113,7 +112,7 @@ fn differ_by<'a>(
     let within: f64 = settings.values().map(|s| s.2 - s.1 * s.1 / s.0).sum();
     let below = settings.values().map(|s| s.3 - 1).sum::<usize>();
     let p = if below >= SPARE {
-        variance_ratio_p((between / above as f64) / (within.max(0.0) / below as f64), above, below)?
+        variance_ratio_p((between / above as f64) / (within / below as f64).max(each.least), above, below)?
     } else {
         chi_square_p(between, above)?
     };
@@ -140,8 +139,8 @@ type Point = (f64, f64, f64);
 /// The straight line through the trials' own CORs, each weighing by its information, within
 /// settings where trials repeat each other; arguments as for [`differ`].
 #[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss)] // places in a list
-pub(crate) fn drift(trials: &[Trial], separate: &[(f64, f64)], cor: f64) -> Option<Drift> {
-    let points = || separate.iter().enumerate().filter(|(_, s)| s.0 > 0.0).map(|(n, s)| (s.0, n as f64, s.1));
+pub(crate) fn drift(trials: &[Trial], each: Each<'_>, cor: f64) -> Option<Drift> {
+    let points = || each.own.iter().enumerate().filter(|(_, s)| s.0 > 0.0).map(|(n, s)| (s.0, n as f64, s.1));
     let release = |trial: &Trial| trial.readings.first().filter(|r| r.event == Event::Release).and_then(|r| r.height);
     // In steps of the releases that count as one.
     let step = |height: f64| (ln(height.max(f64::MIN_POSITIVE)) / SAME_HEIGHT).round() as i64;
@@ -159,11 +158,11 @@ pub(crate) fn drift(trials: &[Trial], separate: &[(f64, f64)], cor: f64) -> Opti
     let within: Vec<Point> = settings.values().flat_map(about).collect();
     let chance = |line: &Line, count: usize, groups: usize| {
         let freedom = count.checked_sub(1 + groups).filter(|freedom| count >= TREND && *freedom > 0)?;
-        by_chance(line, freedom)
+        by_chance(line, freedom, each.least)
     };
     let repeats = chance(&Line::through(within.iter().copied()), within.len(), settings.len()).filter(|p| *p < REJECT);
     let line = Line::through(points());
     let p = repeats.or_else(|| chance(&line, points().count(), 1))?;
-    let (first, last) = (cor + line.at(0.0), cor + line.at(separate.len() as f64 - 1.0));
+    let (first, last) = (cor + line.at(0.0), cor + line.at(each.own.len() as f64 - 1.0));
     ((last - first).abs() > ROUNDED).then_some(Drift { p, first, last, repeats: repeats.is_some() })
 }

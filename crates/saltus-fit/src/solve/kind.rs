@@ -31,7 +31,9 @@ pub(crate) struct Kind<M> {
     /// The error was set by the spread between trials.
     pub(crate) replicated: bool,
     /// For each trial of the table its information on the COR, and its own COR less that of all.
-    pub(crate) separate: Vec<(f64, f64)>,
+    separate: Vec<(f64, f64)>,
+    /// The error that rounding alone leaves, in errors of a reading.
+    rounded: f64,
     /// How much the COR scatters from bounce to bounce, relative to it, where the estimate allows
     /// for that.
     pub(crate) scatter: Option<f64>,
@@ -40,6 +42,23 @@ pub(crate) struct Kind<M> {
     pub(crate) spread: Option<f64>,
     /// The models of ratios beside one COR, where the bounces scatter.
     pub(crate) models: Vec<ModelChoice>,
+}
+
+/// What each trial says of the COR by itself.
+#[derive(Clone, Copy)]
+pub(crate) struct Each<'a> {
+    /// Trial by trial, its information on the COR, and its own COR less that of all.
+    pub(crate) own: &'a [(f64, f64)],
+    /// The variance that rounding alone leaves, in that of a reading: trials that repeat each other
+    /// exactly were rounded, not perfect.
+    pub(crate) least: f64,
+}
+
+impl<M> Kind<M> {
+    /// What each trial says of the COR by itself.
+    pub(crate) fn each(&self) -> Each<'_> {
+        Each { own: &self.separate, least: self.rounded.powi(2) }
+    }
 }
 
 /// Fits one kind of reading; `None` where the table does not determine a COR by it.
@@ -81,7 +100,8 @@ pub(crate) fn one_kind<M: OneKind>(evidence: &Evidence, known: Option<Sourced>) 
         estimate = with_spread(estimate, &across);
         replicated = true;
     }
-    let trend = trend(&model, &fitted, sigma, rounding(&M::read(evidence)) / sigma.value);
+    let rounded = rounding(&M::read(evidence)) / sigma.value;
+    let trend = trend(&model, &fitted, sigma, rounded);
     let mut separate = in_cor(&fitted.separate, M::cor(fitted.shared[0]).1);
     if let (Some(pooled), Some(mean)) = (pooled, estimate.value) {
         // Each is counted from the estimate.
@@ -106,6 +126,7 @@ pub(crate) fn one_kind<M: OneKind>(evidence: &Evidence, known: Option<Sourced>) 
         trend,
         replicated,
         separate,
+        rounded,
         scatter: None,
         spread,
         models: Vec::new(),
@@ -150,6 +171,7 @@ pub(crate) fn times(evidence: &Evidence, known: Option<Sourced>) -> Result<Optio
         }
         kind.separate = in_cor(&found.separate, kind.estimate.value.unwrap_or(1.0));
         (kind.trend, kind.replicated, kind.scatter) = (found.trend, found.replicated, Some(found.scatter));
+        kind.rounded = 0.0;
         kind.models = found.models;
     }
     Ok(Some(kind))

@@ -15,7 +15,7 @@ use crate::elementary::{exp, ln};
 use crate::evidence::{Evidence, TrialEvidence};
 use crate::model::LONGEST_CONTACT;
 use crate::quantity::{CorModel, Measured, Method, Source, Sourced};
-use crate::statistics::{REPLICATED, SCATTER, student, variance_ratio_p};
+use crate::statistics::{CLEAR, REPLICATED, SCATTER, student, variance_ratio_p};
 
 /// A trial with more ratios than this is left to the fit of the times: its covariance would be too
 /// large a matrix.
@@ -43,6 +43,8 @@ struct Solved {
     /// Twice the negative restricted log-likelihood, with a common factor of the covariance
     /// profiled out.
     deviance: f64,
+    /// The same of the whole likelihood, and a price for each unknown.
+    bic: f64,
     /// For each trial 1ᵀC⁻¹1 and 1ᵀC⁻¹y.
     parts: Vec<(f64, f64)>,
 }
@@ -116,16 +118,17 @@ fn solve(trials: &[Ratios], scatter: f64, reading: f64) -> Option<Solved> {
         })
         .sum();
     let deviance = log_det + ln(weight) + (count - 1.0) * ln(square);
+    let bic = log_det + count * ln(square) + ln(count);
     let good = mean.is_finite() && square.is_finite() && weight > 0.0;
-    good.then_some(Solved { mean, variance: 1.0 / weight, square, deviance, parts })
+    good.then_some(Solved { mean, variance: 1.0 / weight, square, deviance, bic, parts })
 }
 
 /// The COR from ratios, where the readings favour bounces that scatter over times that are read
 /// badly; else `None`.
 ///
 /// With a known reading error the scatter of the bounces is what is left over (the estimate of
-/// Paule and Mandel, J. Res. NBS 87, 377, 1982); without one, the two explanations are compared by
-/// their restricted likelihood, and the better is taken.
+/// Paule and Mandel, J. Res. NBS 87, 377, 1982); without one, the two explanations are compared,
+/// and the better is taken.
 #[allow(clippy::cast_precision_loss)]
 pub(crate) fn scattering(evidence: &Evidence, sigma: Sourced) -> Option<FromRatios> {
     let trials: Vec<Ratios> = evidence.trials.iter().filter_map(collect).collect();
@@ -135,10 +138,7 @@ pub(crate) fn scattering(evidence: &Evidence, sigma: Sourced) -> Option<FromRati
     }
     let freedom = count - 1;
     let (scatter, reading) = if sigma.source == Source::Scatter || sigma.source == Source::Assumed {
-        let (timing, bouncing) = (solve(&trials, 0.0, 1.0)?, solve(&trials, 1.0, 0.0)?);
-        if timing.deviance <= bouncing.deviance {
-            return None;
-        }
+        let bouncing = timed_worse(&trials)?;
         ((bouncing.square / freedom as f64).sqrt(), 0.0)
     } else {
         let excess = |s: f64| solve(&trials, s, sigma.value).map(|found| found.square - freedom as f64);
@@ -202,6 +202,28 @@ const FOLLOWS: [Follows; 3] = [
 /// The longest flight must be so many times the shortest.
 const SPANS: f64 = 2.0;
 
+/// One COR by bounces that scatter, where these explain the ratios better than times that are read
+/// badly do.
+///
+/// The two are compared by their restricted likelihood beside what the ratios clearly follow: what
+/// follows air or the speed would be a scatter of the bounces beside one COR, however well times
+/// were read.
+fn timed_worse(trials: &[Ratios]) -> Option<Solved> {
+    let (timing, bouncing) = (solve(trials, 0.0, 1.0)?, solve(trials, 1.0, 0.0)?);
+    let follows = |(_, x, sign): Follows| {
+        let lines = [(0.0, 1.0), (1.0, 0.0)].map(|(s, r)| line(trials, |t, k| x(t.before[k]), s, r));
+        let likely = |line: Option<Line>| {
+            line.filter(|line| line.slope * sign >= 0.0).map(|line| (line.bic + CLEAR, line.deviance))
+        };
+        let [Some(timing), Some(bouncing)] = lines.map(likely) else { return None };
+        Some([timing, bouncing])
+    };
+    let level = [&timing, &bouncing].map(|found| (found.bic, found.deviance));
+    let all = FOLLOWS.into_iter().filter_map(follows).chain([level]);
+    let best = all.min_by(|a, b| a[0].0.min(a[1].0).total_cmp(&b[0].0.min(b[1].0)))?;
+    (best[1].1 < best[0].1).then_some(bouncing)
+}
+
 /// The models of [`FOLLOWS`] beside one COR, with bounces that scatter.
 #[allow(clippy::cast_precision_loss)]
 fn beside(trials: &[Ratios], one: &Estimate, scatter: f64, reading: f64) -> Vec<ModelChoice> {
@@ -250,6 +272,9 @@ struct Line {
     left: f64,
     alone: f64,
     count: usize,
+    /// As those of [`Solved`].
+    deviance: f64,
+    bic: f64,
 }
 
 /// The line over `x`, by generalised least squares; its errors are those of the scatter about it.
@@ -257,12 +282,13 @@ struct Line {
 fn line(trials: &[Ratios], x: impl Fn(&Ratios, usize) -> f64, scatter: f64, reading: f64) -> Option<Line> {
     let mut normal = DMatrix::<f64>::zeros(2, 2);
     let mut right = DVector::<f64>::zeros(2);
-    let (mut total, mut count) = (0.0, 0);
+    let (mut total, mut log_det, mut count) = (0.0, 0.0, 0);
     for trial in trials {
         let n = trial.y.len();
         let x = DMatrix::from_fn(n, 2, |i, j| if j == 0 { 1.0 } else { x(trial, i) });
         let covariance = DMatrix::from_diagonal_element(n, n, scatter * scatter) + reading * reading * &trial.reading;
         let factor = covariance.cholesky()?;
+        log_det += 2.0 * factor.l_dirty().diagonal().iter().map(|d| ln(*d)).sum::<f64>();
         let weighted = factor.solve(&x);
         normal += x.transpose() * &weighted;
         right += weighted.transpose() * &trial.y;
@@ -274,6 +300,7 @@ fn line(trials: &[Ratios], x: impl Fn(&Ratios, usize) -> f64, scatter: f64, read
     let left = (total - found.dot(&right)).max(0.0);
     let freedom = count.checked_sub(2).filter(|n| *n > 0)?;
     let variance = left / freedom as f64;
+    let unexplained = log_det + freedom as f64 * ln(left);
     Some(Line {
         level: Measured { value: found[0], standard_error: (variance * inverse[(0, 0)]).sqrt() },
         slope: found[1],
@@ -281,6 +308,8 @@ fn line(trials: &[Ratios], x: impl Fn(&Ratios, usize) -> f64, scatter: f64, read
         left,
         alone: total - right[0] * right[0] / normal[(0, 0)],
         count,
+        deviance: unexplained + ln(normal.determinant()),
+        bic: unexplained + 2.0 * (ln(left) + ln(count as f64)),
     })
 }
 

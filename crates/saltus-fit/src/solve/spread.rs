@@ -60,7 +60,7 @@ impl Apart {
         let Some(above) = self.cors.len().checked_sub(1).filter(|n| *n > 0) else { return false };
         let between = (whole - self.chi_square).max(0.0);
         if sigma == Source::Scatter {
-            let ratio = (between / above as f64) / (self.chi_square / self.freedom.max(1) as f64).max(1e-300);
+            let ratio = (between / above as f64) / (self.chi_square / self.freedom.max(1) as f64);
             return variance_ratio_p(ratio, above, self.freedom).is_some_and(|p| p < reject);
         }
         let holds = chi_square_p(self.chi_square, self.freedom).is_none_or(|p| p >= reject);

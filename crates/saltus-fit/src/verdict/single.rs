@@ -87,7 +87,7 @@ pub(crate) fn single<M: OneKind>(
         judgement.doubt(FindingKind::Lossless { readings });
     }
     let differ = settings::<M>(judgement, kind, (trials, evidence), &mut cor);
-    let beside = differ_beside(trials, &kind.separate, cor.value).filter(|(_, d)| d.p < REJECT && !differ);
+    let beside = differ_beside(trials, kind.each(), cor.value).filter(|(_, d)| d.p < REJECT && !differ);
     if let Some((column, found)) = beside {
         cor = Cor::within(cor.value, cor.low.min(found.low.1), cor.high.max(found.high.1));
         judgement.widen(Widening::Settings);
@@ -100,7 +100,7 @@ pub(crate) fn single<M: OneKind>(
     if part > LOUD && !differ {
         judgement.doubt(FindingKind::Loud { readings, part });
     }
-    if let Some(drift) = drift(trials, &kind.separate, cor.value).filter(|d| d.p < REJECT && !differ) {
+    if let Some(drift) = drift(trials, kind.each(), cor.value).filter(|d| d.p < REJECT && !differ) {
         let found = FindingKind::OrderDrift { first: drift.first, last: drift.last, p: drift.p };
         let apart = |end: f64| (end - cor.value).abs() > SAME;
         if drift.repeats && (apart(drift.first) || apart(drift.last)) {
@@ -148,7 +148,7 @@ fn scatter<M: OneKind>(judgement: &mut Judgement, kind: &Kind<M>, evidence: &Evi
     let misfit = FindingKind::Misfit { readings, chi_square, degrees_of_freedom };
     // Drops of one bounce each whose CORs differ by little have one COR.
     let single = |trial: &TrialEvidence| matches!(trial.heights[..], [(0, ..), (1, ..)]);
-    let one = evidence.trials.iter().all(single) && kind.separate.iter().all(|(_, shift)| shift.abs() <= LEVEL);
+    let one = evidence.trials.iter().all(single) && kind.each().own.iter().all(|(_, shift)| shift.abs() <= LEVEL);
     match (p < REJECT, kind.replicated, kind.scatter) {
         // Drops that differ are named by themselves: reading errors explain every drop alone.
         (true, ..) if kind.spread.is_some() => {}
@@ -180,7 +180,7 @@ fn settings<M: OneKind>(
     (trials, evidence): (&[Trial], &Evidence),
     cor: &mut Cor,
 ) -> bool {
-    let Some(mut differ) = differ(trials, &kind.separate, cor.value).filter(|d| d.p < REJECT) else { return false };
+    let Some(mut differ) = differ(trials, kind.each(), cor.value).filter(|d| d.p < REJECT) else { return false };
     for (setting, cor) in [&mut differ.low, &mut differ.high] {
         *cor = of_setting::<M>(evidence, trials, setting, kind.sigma).unwrap_or(*cor);
     }

@@ -183,9 +183,9 @@ pub(crate) fn error_decides(
         return;
     };
     let scattered = sigma.source == Source::Scatter;
-    // With an error as large as the scatter about one COR, no other model is to be better by so
-    // much.
-    if scattered != doubted || list.iter().any(|m| by_errors(m) < -CLEAR) {
+    // With an error as large as the scatter about one COR, no other model that matters is to be
+    // better by so much.
+    if scattered != doubted || list.iter().filter(matters).any(|m| by_errors(m) < -CLEAR) {
         return;
     }
     let (about_best, about_one) = (misfit.scatter() * sigma.value, left.scatter() * sigma.value);

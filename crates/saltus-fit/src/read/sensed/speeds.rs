@@ -33,6 +33,8 @@ const STRAIGHT: f64 = 0.06;
 /// The slopes of all flights, and gravity, are alike to this part: air takes less, a radar that
 /// looks aslant a little more.
 const ALIKE: f64 = 0.3;
+/// The speed jumps where the tops tell, to within this part of the flight that follows.
+const JUMPS: f64 = 0.05;
 
 /// A flight: when its top is and how well that is known, s, and how the speed changes, 1/s of its
 /// unit.
@@ -71,11 +73,12 @@ pub(super) fn table(
         return None;
     }
     let contacts = contacts(&flights);
-    let jumps = |(n, time): (usize, &f64)| {
-        let near = |m: usize| times.get(m).copied().unwrap_or(*time);
-        (near(peaks[n].saturating_sub(1))..=near(peaks[n] + 2)).contains(time)
+    let jumps = |(n, pair): (usize, &[f64])| {
+        let near = |m: usize| times.get(m).copied().unwrap_or(pair[0]);
+        let off = JUMPS * (pair[1] - pair[0]);
+        (near(peaks[n].saturating_sub(1)) - off..=near(peaks[n] + 2) + off).contains(&pair[0])
     };
-    if !contacts.iter().enumerate().take(flights.len()).all(jumps) {
+    if !contacts.windows(2).enumerate().all(jumps) {
         return None;
     }
     let sigma = flights.iter().map(|flight| flight.sigma).fold(rounding(&times), hypot);
