@@ -213,7 +213,7 @@ proptest! {
         let ball = Ball { cor: e, at: 0.4, speed: 5.2, lasts: 0.006 };
         let contacts = ball.contacts(0.04);
         let speed = |t: f64| match contacts.iter().rev().find(|(begin, _)| *begin <= t) {
-            None => (G * (t - ball.at)).max(0.0) * -1.0,
+            None => -(G * (t - ball.at)).max(0.0),
             Some((begin, speed)) if t < begin + ball.lasts => -speed * (1.0 - (1.0 + e) * (t - begin) / ball.lasts),
             Some((begin, speed)) if *speed > contacts[contacts.len() - 1].1 => e * speed - G * (t - begin - ball.lasts),
             Some(_) => 0.0,

@@ -244,7 +244,7 @@ fn a_film_of_two_drops_is_of_both() {
     }
     let others = [1.0, 1.3].map(|drop| ball(drop, |_| 0.8).film(60.0, 2.4));
     for count in [1, 2] {
-        let report = joined(&[&[first.clone()], &others[..count]].concat());
+        let report = joined(&[std::slice::from_ref(&first), &others[..count]].concat());
         let near = report.cor().is_some_and(|cor| (cor.value - 0.8).abs() < 0.004);
         assert!(near && drops(&report) == Some(count + 1) && report.verdict() == Verdict::Trusted, "{report}");
     }

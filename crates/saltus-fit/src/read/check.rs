@@ -66,6 +66,9 @@ fn copies(table: &mut Table) {
     table.trials.retain(|_| !copied.next().copied().unwrap_or(false));
 }
 
+/// Heights, and times, to the last digit.
+type Digits = Vec<(bool, u64)>;
+
 /// The doubt about balls, floors or heights of release whose readings are the same to the last
 /// digit, as those of no two are: those of one were copied.
 pub(super) fn copied(trials: &[Trial]) -> Option<Doubt> {
@@ -73,7 +76,7 @@ pub(super) fn copied(trials: &[Trial]) -> Option<Doubt> {
     let filmed = |trial: &Trial| trial.readings.iter().any(|r| r.event == Event::Sample);
     let among = |name: fn(&Trial) -> &str| {
         let mut order: Vec<&str> = Vec::new();
-        let mut all: HashMap<&str, (Vec<(bool, u64)>, f64)> = HashMap::new();
+        let mut all: HashMap<&str, (Digits, f64)> = HashMap::new();
         for trial in trials.iter().filter(|trial| !filmed(trial)) {
             let (read, chance) = all.entry(name(trial)).or_insert_with(|| {
                 order.push(name(trial));
@@ -85,7 +88,7 @@ pub(super) fn copied(trials: &[Trial]) -> Option<Doubt> {
         // What all of them share is less likely the more they are.
         let first = &all.get(order.first()?)?.0;
         let others = if all.values().all(|(read, _)| read == first) { all.len().saturating_sub(1).max(1) } else { 1 };
-        let mut seen: HashMap<&[(bool, u64)], &str> = HashMap::new();
+        let mut seen: HashMap<&Digits, &str> = HashMap::new();
         order.iter().find_map(|name| {
             #[allow(clippy::cast_precision_loss)] // balls of a table
             let (read, _) = all.get(name).filter(|(_, chance)| others as f64 * chance >= CHANCE)?;

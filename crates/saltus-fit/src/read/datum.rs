@@ -178,7 +178,7 @@ fn mark(clause: &str) -> Option<Zero> {
     let relative = |(at, word): (usize, &str)| Phrase::Whose.is(&folded(word)).then_some(at + word.len());
     let starts = std::iter::once(0).chain(clause.match_indices(' ').map(|(at, _)| at + 1));
     let words = starts.map(|at| (at, clause[at..].split(' ').next().unwrap_or_default()));
-    let (said, clause) = words.filter_map(relative).last().map_or(("", clause), |at| clause.split_at(at));
+    let (said, clause) = words.filter_map(relative).next_back().map_or(("", clause), |at| clause.split_at(at));
     // What a ball bounces on is a floor, whatever it is called.
     let met = split(said).iter().any(|word| word.is(Atom::Impact) || word.is(Atom::Rebound));
     let is_floor = |word: &Word| word.is(Atom::Floor) || met && word.is(Atom::Group);

@@ -30,7 +30,7 @@ pub(super) fn table(text: &str) -> Option<String> {
     let found: Vec<(f64, Option<Unit>, bool)> = text.lines().filter_map(entry).collect();
     let turns = found.iter().enumerate().all(|(n, (_, _, begins))| *begins == (n % 2 == 0));
     let rises = found.windows(2).all(|pair| pair[0].0 < pair[1].0);
-    if found.len() < 2 * CONTACTS || found.len() % 2 != 0 || !turns || !rises {
+    if found.len() < 2 * CONTACTS || !found.len().is_multiple_of(2) || !turns || !rises {
         return None;
     }
     let of_lines = || text.lines().filter(|line| entry(line).is_none()).flat_map(clause::clauses);
