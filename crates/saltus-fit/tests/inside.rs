@@ -51,6 +51,7 @@ fn files() -> Vec<PathBuf> {
         "read/heading/inside.rs",
         "read/phrases.rs",
         "read/programs.rs",
+        "read/programs/bare.rs",
         "read/title.rs",
         "sound/ears.rs",
         "sound/fade.rs",

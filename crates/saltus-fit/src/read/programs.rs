@@ -1,21 +1,21 @@
 //! What programs write: Tracker, `ImageJ`, Vernier, Audacity's labels, runs side by side, bare
 //! numbers.
 
+mod bare;
+
 use std::collections::HashSet;
 
 use super::ReadOptions;
 use super::aside::{LeftAside, Part, Why};
 use super::cell::Cell;
-use super::clause;
 use super::filed;
-use super::grid::{Grid, View, shown};
+use super::grid::{Grid, View};
 use super::heading::{At, Heading, Meaning, What};
 use super::region::{self, Region};
 use super::units::{Dimension, Unit};
 use super::vocabulary::Atom;
 use crate::error::TableError;
 use crate::finding::Program;
-use crate::statistics::median;
 
 /// The tables of a text, and what they are.
 pub(super) struct Recognised<'a> {
@@ -34,18 +34,6 @@ impl<'a> From<Vec<Region<'a>>> for Recognised<'a> {
 
 /// A label of a contact spans no more than this, s.
 const LABEL: f64 = 0.2;
-/// So many numbers without a name are those of a film, a second or less of it,
-const FRAMES: usize = 20;
-/// where half of the steps from one to the next are shorter than this part of the way.
-const NEAR: f64 = 0.1;
-
-/// Samples of a sensor without names stand below so many lines,
-const HEAD: usize = 20;
-/// and are so many: at the slowest rate that shows contacts, one second.
-const SAMPLES: usize = 100;
-/// What they are called.
-const SAMPLE: &str = "amplitude";
-
 /// Recognises the tables of a text; `fps` is the frame rate, by an option or a comment.
 pub(super) fn tables<'a>(
     grid: &'a Grid<'a>,
@@ -63,7 +51,7 @@ pub(super) fn tables<'a>(
     if first(0).eq_ignore_ascii_case("frame") && position(view, 0, "y1").is_some() {
         return imagej(view, options);
     }
-    if let Some(found) = by_hand(view).or_else(|| samples(view)) {
+    if let Some(found) = by_hand(view).or_else(|| bare::samples(view)) {
         return Ok(found);
     }
     if let Some(found) = results(view) {
@@ -77,7 +65,7 @@ pub(super) fn tables<'a>(
     }
     if numbers(view, 0) {
         let named = || filed::table(view).filter(|_| options.fps.is_none() && options.height_unit.is_none());
-        return Ok(vec![named().map_or_else(|| bare(view, options, fps), Ok)?].into());
+        return Ok(vec![named().map_or_else(|| bare::table(view, options, fps), Ok)?].into());
     }
     let found = region::tables(view);
     let found = if found.is_empty() { turned(grid).into_iter().collect() } else { found };
@@ -140,14 +128,6 @@ fn numbers(view: View<'_>, row: usize) -> bool {
         view.cell(row, column).is_empty() || measured(view.read(row, column))
     };
     (0..view.width(row)).all(bare)
-}
-
-/// Whether numbers one below the other are places of what moves: many, each near the one before.
-fn a_path(view: View<'_>, column: usize) -> bool {
-    let places: Vec<f64> = (0..view.rows()).filter_map(|row| view.number(row, column)).collect();
-    let (low, high) = places.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(*y), h.max(*y)));
-    let mut steps: Vec<f64> = places.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
-    places.len() >= FRAMES && median(&mut steps).is_some_and(|step| step < NEAR * (high - low))
 }
 
 /// Names given beside the file, above all rows that hold numbers.
@@ -270,21 +250,6 @@ fn by_hand(view: View<'_>) -> Option<Recognised<'_>> {
     };
     let regions = tracks.iter().map(region).collect();
     Some(Recognised { program: Some(Program::ImageJ), regions, tracks: true })
-}
-
-/// Samples one below the other without a name, as programs for sound export them, below lines that
-/// state their rate. `None` where it is none of it.
-fn samples(view: View<'_>) -> Option<Recognised<'_>> {
-    let bare = |row: usize| view.width(row) == 1 && view.is_number(row, 0);
-    let first = (0..view.rows().min(HEAD)).find(|&row| bare(row))?;
-    let text = |row: usize| view.cells(row).filter(|cell| !cell.is_empty()).collect::<Vec<_>>().join(" ");
-    let stated = (0..first).any(|row| clause::frame_rate(&text(row)).is_some());
-    let long = view.rows() - first >= SAMPLES;
-    (stated && long && (first..view.rows()).all(bare)).then(|| {
-        let aside = |row: usize| LeftAside::new(Part::Text, shown(&text(row)), Why::Note).at(view.line(row, 0));
-        let region = Region::new(view, vec![SAMPLE.to_owned()], first, (first..view.rows()).collect());
-        vec![Region { aside: (0..first).map(aside).collect(), ..region }].into()
-    })
 }
 
 /// What `ImageJ` measures of lines that were drawn, each as long as the ball was high: `Length`
@@ -445,59 +410,4 @@ fn side_by_side<'a>(region: &Region<'a>) -> Option<Recognised<'a>> {
     let groups = region::repeated(header)?;
     let regions = groups.iter().enumerate().map(|(n, group)| part(format!("run {}", n + 1), &|c| group.contains(&c)));
     Some(Recognised { program: Some(Program::SideBySide), regions: regions.collect(), tracks: false })
-}
-
-/// Numbers without names: a list, if the options say of what; a track of pixels, if they say how
-/// many frames a second.
-fn bare<'a>(view: View<'a>, options: &ReadOptions, fps: Option<f64>) -> Result<Region<'a>, TableError> {
-    let rows = || (0..view.rows()).collect::<Vec<usize>>();
-    let width = view.cells(0).collect::<Vec<_>>().iter().rposition(|cell| !cell.is_empty()).map_or(1, |last| last + 1);
-    let listed = options.height_unit.as_deref().is_some_and(|unit| unit != "px") || options.time_unit.is_some();
-    let name = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect::<Vec<String>>();
-    if width == 1 && (options.fps.is_none() || listed) {
-        let of = |row: usize| match view.read(row, 0) {
-            Cell::Number(measured) => measured.unit.map(|unit| unit.dimension),
-            _ => None,
-        };
-        let own = (0..view.rows()).find_map(of);
-        let kind = match (&options.height_unit, &options.time_unit, own) {
-            (Some(_), None, _) | (_, _, Some(Dimension::Length)) => "height",
-            (None, Some(_), _) | (_, _, Some(Dimension::Time)) => "time",
-            _ => {
-                return Err(view
-                    .error(0, 0, "the list has no header: are these heights or times, and in which unit?")
-                    .question()
-                    .help("put a name above it, such as 'height_cm' or 'time_s', or give either --height-unit cm or --time-unit s"));
-            }
-        };
-        return Ok(Region { given: true, ..Region::new(view, name(&[kind]), 0, rows()) });
-    }
-    // A first column that ascends counts frames, or seconds.
-    let (mut ascends, mut whole, mut last) = (width > 1, true, f64::NEG_INFINITY);
-    for row in 0..view.rows() {
-        let value = match view.read(row, 0) {
-            Cell::Number(measured) => measured.value,
-            _ => f64::NAN,
-        };
-        ascends &= value > last;
-        whole &= value.fract() == 0.0;
-        last = value;
-    }
-    if fps.is_none() && !(ascends && (!whole && width == 3 || width < 4 && a_path(view, width - 1))) {
-        return Err(view.error(0, 0, "the table has no header: its first line is numbers").nothing().help(
-            "name the columns, such as --header bounce,height_cm or --header time_s,height_m; \
-                 for a track of pixels give the frames a second, such as --fps 100",
-        ));
-    }
-    let clock = if whole { "frame" } else { "time" };
-    let (names, frames): (&[&str], bool) = match (width, ascends) {
-        (1, _) => (&["y"], true),
-        (2, true) => (&[clock, "y"], false),
-        (_, true) => (&[clock, "x", "y"], false),
-        (_, false) => (&["x", "y"], true),
-    };
-    let mut header: Vec<String> = name(names);
-    header.resize(view.width(0).max(header.len()), String::new());
-    let units = (Some(Unit::SECOND), Some(Unit::PIXEL));
-    Ok(Region { frames, units, given: true, ..Region::new(view, header, 0, rows()) })
 }

@@ -27,8 +27,8 @@ fn label(line: &str) -> Option<(f64, f64, &str)> {
 }
 
 /// The text with the duration of each label in place of its begin and end, in seconds, and what the
-/// labels say below; `None` where a line is none, where they do not follow one another closely, or do not last ever less by one
-/// factor.
+/// labels say below; `None` where a line is none, where they do not follow one another closely, or
+/// do not last ever less by one factor.
 pub(super) fn table(text: &str) -> Option<String> {
     let lines: Vec<&str> = text.lines().filter(|line| !line.trim().is_empty()).take(MANY).collect();
     let found: Vec<(f64, f64, &str)> = lines.iter().map(|line| label(line)).collect::<Option<_>>()?;
