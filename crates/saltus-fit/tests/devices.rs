@@ -64,8 +64,8 @@ fn lines(header: &str, rows: impl IntoIterator<Item = String>) -> String {
 proptest! {
     #![proptest_config(ProptestConfig { cases: cases(24), failure_persistence: None, ..ProptestConfig::default() })]
 
-    /// What a ball with an accelerometer in it, or a phone, feels: with gravity or without it, which
-    /// way it lies, whether it turns, how hard it clips and how its clock runs.
+    /// What a ball with an accelerometer in it, or a phone, feels: with gravity or without it,
+    /// which way it lies, whether it turns, how hard it clips and how its clock runs.
     #[test]
     fn a_ball_feels_its_contacts(
         e in 0.62f64..0.85,
@@ -100,8 +100,8 @@ proptest! {
         prop_assert!(near(cor(&report), e, 0.012) && report.verdict() == Verdict::Trusted, "{e} {report}");
     }
 
-    /// A switch that the ball closes while it touches: its changes, or its samples, in numbers or in
-    /// words, whichever of the two states is that of a contact, and though it chatters.
+    /// A switch that the ball closes while it touches: its changes, or its samples, in numbers or
+    /// in words, whichever of the two states is that of a contact, and though it chatters.
     #[test]
     fn a_ball_closes_a_switch(e in 0.72f64..0.94, lasts in 2e-4f64..0.01, form in 0usize..4) {
         let ball = Ball { cor: e, at: 0.7, speed: 2.6, lasts };
@@ -200,8 +200,8 @@ proptest! {
         prop_assert!(near(trusted(&text), e, 0.01), "{e} {}", fit(&text));
     }
 
-    /// Speeds of a ball in flight, upwards and downwards alike or not, none below what a radar sees;
-    /// so often that six of them tell the third flight.
+    /// Speeds of a ball in flight, upwards and downwards alike or not, none below what a radar
+    /// shows; so often that six of them tell the third flight.
     #[test]
     fn the_speed_of_a_ball_tells_its_contacts(
         e in 0.65f64..0.88,
@@ -238,8 +238,8 @@ proptest! {
     }
 }
 
-/// A phone that lies, is carried, or is shaken, shows no ball; nor does a speed that falls and rises
-/// otherwise than in flight.
+/// A phone that lies, is carried, or is shaken, shows no ball; nor does a speed that falls and
+/// rises otherwise than in flight.
 #[test]
 fn what_moves_otherwise_is_no_ball() {
     let mut noise = Noise(4);

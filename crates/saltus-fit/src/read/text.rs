@@ -54,8 +54,8 @@ pub(super) fn text<'a>(name: &str, bytes: &'a [u8]) -> Result<Text<'a>, TableErr
         forms::indexed,
     ];
     let text = around.into_iter().fold(text, taken);
-    // What is typed by hand has no more lines than these; a longer text is of cells side by side, and
-    // so is one of numbers.
+    // What is typed by hand has no more lines than these; a longer text is of cells side by side,
+    // and so is one of numbers.
     let typed = text.lines().nth(MANY).is_none() && !sampled(&text);
     let text = if typed { [forms::bulleted, forms::table].into_iter().fold(text, taken) } else { text };
     let text = aligned(&text).map_or(text, Cow::Owned);

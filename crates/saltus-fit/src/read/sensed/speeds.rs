@@ -3,8 +3,8 @@
 //!
 //! In flight the speed falls and rises by one slope, and between is none: a straight line through
 //! it, taken as negative before the top, tells when that is. From top to top the ball flies for
-//! half of one flight and half of the next, so that these times shrink by the COR as flights do, and
-//! tell where between them the contacts are.
+//! half of one flight and half of the next, so that these times shrink by the COR as flights do,
+//! and tell where between them the contacts are.
 
 use super::clock;
 use crate::elementary::hypot;
