@@ -174,7 +174,7 @@ fn value(number: &str) -> Option<f64> {
 /// `floor at y = 0 px`, `the floor is at the 12 cm mark of the tape`, `a plate whose surface reads
 /// 4 cm`, `the tape reads 12 cm at the floor`.
 fn mark(clause: &str) -> Option<Zero> {
-    // What is said of the word before it stands by itself.
+    // What describes the word before it stands by itself.
     let relative = |(at, word): (usize, &str)| Phrase::Whose.is(&folded(word)).then_some(at + word.len());
     let starts = std::iter::once(0).chain(clause.match_indices(' ').map(|(at, _)| at + 1));
     let words = starts.map(|at| (at, clause[at..].split(' ').next().unwrap_or_default()));

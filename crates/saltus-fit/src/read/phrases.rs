@@ -116,7 +116,7 @@ pub(super) enum Phrase {
     Nothing,
     /// Before what is not one kind, but several.
     Differing,
-    /// Begins what is said of the word before it.
+    /// Begins what describes the word before it.
     Whose,
     /// A number is to be taken off readings.
     Subtract,
