@@ -45,6 +45,7 @@ mod stand_ins;
 mod stated;
 mod unnamed;
 mod unscaled;
+mod whence;
 mod wording;
 
 // Estimation: what is planted is found, and how far that can be believed.

@@ -57,6 +57,10 @@ pub(super) fn read(cell: &str, comma: bool) -> Cell {
     if matches!(text, "" | "-" | "--" | "–" | "—" | "?" | "NA" | "n/a" | "N/A" | "na" | "#N/A" | ".") {
         return Cell::Empty;
     }
+    // In Turkish the sign stands before the number.
+    if let Some(number) = text.strip_prefix('%').filter(|number| number.starts_with(|c: char| c.is_ascii_digit())) {
+        return read(&format!("{number}%"), comma);
+    }
     if let Ok(value) = text.parse::<f64>() {
         let spelt = text.trim_start_matches(['+', '-']).starts_with(char::is_alphabetic);
         return match (value.is_finite(), spelt) {

@@ -8,7 +8,7 @@ use super::heading::{At, DropHeight, Heading, Role, rate, released};
 use super::limits::MANY;
 use super::phrases::Phrase;
 use super::units::{Dimension, Unit};
-use super::vocabulary::{Atom, folded};
+use super::vocabulary::{Atom, folded, unparted};
 use super::words::{Kind, Word, split};
 use super::written::{rounds_to, step};
 use crate::quantity::Ball;
@@ -68,7 +68,7 @@ pub(super) fn drop(text: &str) -> Option<DropHeight> {
             let named = before.trim_end_matches([' ', '=', ':', '(']);
             let (named, sign) = signed(named).unwrap_or((named, 0));
             let height = DropHeight { sign, ..height };
-            let (before, after) = (split(named), split(after));
+            let (before, after) = (without_times(split(named)), split(after));
             let of_height = |w: &Word| w.is(Atom::Height) || matches!(&*folded(&w.text), "from" | "aus" | "de" | "von");
             // What is dropped from a height is dropped from it, wherever it falls.
             // A ball `from 1 m` was dropped from there.
@@ -129,6 +129,19 @@ pub(super) fn drop(text: &str) -> Option<DropHeight> {
             sign: signed(before.split(['(', '[']).next().unwrap_or_default()).map_or(0, |(_, sign)| sign),
         })
     })
+}
+
+/// The words without how often something was done: `dropped three times from`.
+fn without_times(mut words: Vec<Word>) -> Vec<Word> {
+    let counts = |word: &Word| {
+        let spelt = folded(&word.text);
+        matches!(word.kind, Kind::Number(_)) || Phrase::Count.is(&spelt) || Phrase::Several.is(&spelt)
+    };
+    let often = |pair: &[Word]| counts(&pair[0]) && Phrase::Times.is(&folded(&pair[1].text));
+    while let Some(at) = words.windows(2).position(often) {
+        words.drain(at..at + 2);
+    }
+    words
 }
 
 /// The text before the sign of a height that it ends in, `h0`, `(H_1)`, and the number of the sign.
@@ -320,12 +333,15 @@ fn of_all(clause: &str) -> Option<Unit> {
     let clause = clause.trim().trim_end_matches([':', '.']);
     let bare = clause.trim_matches(['(', ')', '.']);
     let bracketed = clause.ends_with(')') && !clause.starts_with('(');
-    let (name, unit) = bare.rsplit_once([' ', '('])?;
+    // Words that no blanks part lead to a unit in Latin letters: `単位はすべてcm`.
+    let joined =
+        || bare.rfind(unparted).and_then(|at| bare[at..].chars().next().map(|c| bare.split_at(at + c.len_utf8())));
+    let (name, unit) = bare.rsplit_once([' ', '(']).or_else(joined)?;
     let unit = Unit::parse(unit.trim_matches(['(', ')'])).filter(|unit| !unit.unscaled())?;
     let plain = |word: &Word| match word.kind {
-        Kind::Known(atoms) => atoms
-            .iter()
-            .all(|atom| matches!(atom, Atom::Filler | Atom::Height | Atom::Time | Atom::Read | Atom::Number)),
+        Kind::Known(atoms) => atoms.iter().all(|atom| {
+            matches!(atom, Atom::Filler | Atom::Height | Atom::Time | Atom::Read | Atom::Number | Atom::Measure)
+        }),
         _ => false,
     };
     let plain = |word: &Word| plain(word) || Phrase::Lengths.is(&folded(&word.text));
@@ -334,6 +350,10 @@ fn of_all(clause: &str) -> Option<Unit> {
         return Some(unit);
     }
     let last = words.last().is_some_and(|word| Phrase::In.is(&folded(&word.text)));
+    // `단위는 모두 cm`: the unit is named as such.
+    if words.len() > 1 && words.iter().all(plain) && words.iter().any(|word| word.is(Atom::Measure)) {
+        return Some(unit);
+    }
     // A clause may be nothing but the unit: `read at its top, in cm`.
     (last && words.iter().take(words.len() - 1).all(plain)).then_some(unit)
 }

@@ -1,11 +1,14 @@
 //! From the bytes of a file to a table: what kind of file, which tables in it, their trials
 //! together.
 
+use std::borrow::Cow;
+
 use super::alarms;
 use super::aside::{LeftAside, Part as Kind, Why};
 use super::clause;
 use super::columns::Columns;
 use super::datum::Datum;
+use super::digits;
 use super::foreign;
 use super::grid::{Grid, View};
 use super::heading::{Heading, What};
@@ -394,8 +397,9 @@ fn sheet(name: &str, part: &Part, options: &ReadOptions, noted: Option<f64>) -> 
     let (decoded, plain);
     let (name, tab, content) = match &part.content {
         Content::Cells(cells) => {
-            plain = text::counted(cells);
-            (name, Some(part.name.as_str()), plain.as_deref().unwrap_or(cells))
+            let spelt = digits::plain(cells).map_or(Cow::Borrowed(cells.as_str()), Cow::Owned);
+            plain = text::counted(&spelt).map_or(spelt, Cow::Owned);
+            (name, Some(part.name.as_str()), &*plain)
         }
         Content::Bytes(bytes) => match text(&inner, bytes) {
             Ok(found) => {

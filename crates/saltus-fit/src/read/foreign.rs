@@ -4,6 +4,7 @@
 use quick_xml::Reader;
 use quick_xml::events::Event;
 
+use super::cell::{self, Cell};
 use super::forms;
 use super::limits::MANY;
 use super::sheet::{Content, Part};
@@ -215,6 +216,21 @@ fn within_a_line(tag: &str) -> bool {
     matches!(tag, "b" | "i" | "em" | "strong" | "u" | "span" | "a" | "small" | "sub" | "sup" | "font" | "code" | "mark")
 }
 
+/// Takes the mark of a note off the number that it stands at: `200<sup>a</sup>`.
+fn unmarked(cell: &mut String) {
+    let bare = |(number, mark): &(&str, &str)| {
+        let letters = (1..=MARK).contains(&mark.trim().chars().count())
+            && !mark.contains(|c: char| c.is_ascii_digit() || c == '-');
+        letters && matches!(cell::read(number.trim(), false), Cell::Number(_))
+    };
+    if let Some(end) = cell.split_once('^').filter(bare).map(|(number, _)| number.trim_end().len()) {
+        cell.truncate(end);
+    }
+}
+
+/// The mark of a note is no longer: `a`, `**`, `(b)`.
+const MARK: usize = 3;
+
 /// The tables found so far.
 #[derive(Default)]
 struct Page {
@@ -308,6 +324,9 @@ impl Page {
 
     fn close_cell(&mut self) {
         if self.open {
+            if let Some(text) = self.row.last_mut() {
+                unmarked(text);
+            }
             let (columns, rows) = self.span;
             let more = columns.min(MANY - self.row.len().min(MANY) + 1) - 1;
             let first = self.row.len() - 1;

@@ -49,6 +49,7 @@ pub(super) fn table(text: &str) -> Option<String> {
         numbered::clocked,
         laps::table,
         wiki::table,
+        wiki::marked,
         blocks::led,
         blocks::table,
         blocks::records,
@@ -299,7 +300,10 @@ fn measured(line: &str) -> Option<(&str, &str)> {
     let name = line.trim_end().strip_suffix(last.number)?;
     let unit = matches!(cell::read(last.number, false), Cell::Number(m) if m.unit.is_some());
     // Blanks beside each other part cells.
-    let chained = arrows().any(|arrow| name.contains(arrow)) || found.len() > 1 && name.trim_end().contains("  ");
+    let length = |part: &Part<'_>| length(part.number).is_some() && part.words.is_empty();
+    let chained = arrows().any(|arrow| name.contains(arrow))
+        || found.len() > 1
+            && (name.trim_end().contains("  ") || name.ends_with("  ") && found.first().is_some_and(length));
     let words =
         !chained && found.len() < 3 && name.contains(char::is_alphabetic) && !name.contains([',', ';', '|', '\t']);
     (unit && words).then_some((name, last.number))

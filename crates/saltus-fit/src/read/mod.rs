@@ -10,6 +10,7 @@ mod check;
 mod clause;
 mod columns;
 mod datum;
+mod digits;
 mod drops;
 mod encoding;
 mod file;

@@ -124,10 +124,16 @@ pub(super) enum Phrase {
     Reads,
     /// What an instrument was set to.
     Tuned,
+    /// A heading that it ends, or begins before a height, is of where a ball was dropped from,
+    Whence,
+    /// and of where it came up to.
+    Whither,
+    /// Behind a number, how often something was done.
+    Times,
 }
 
 impl Phrase {
-    const ALL: [(&'static str, Self); 58] = [
+    const ALL: [(&'static str, Self); 61] = [
         ("missing", Self::Missing),
         ("about", Self::About),
         ("half", Self::Half),
@@ -186,6 +192,9 @@ impl Phrase {
         ("subtract", Self::Subtract),
         ("reads", Self::Reads),
         ("tuned", Self::Tuned),
+        ("whence", Self::Whence),
+        ("whither", Self::Whither),
+        ("times", Self::Times),
     ];
 
     /// The phrases of this kind, in the order of the file.

@@ -90,7 +90,7 @@ impl Columns {
                         Some((low, _)) if value.role == Role::Max => self.columns[*index].kind = Kind::High(*low),
                         Some(_) => self.read(*index),
                         // The greatest height between two bounces is that of the apex.
-                        None if value.role == Role::Max && self.of_bounces(*index) => {
+                        None if value.role == Role::Max && (self.of_bounces(*index) || self.highest(*index)) => {
                             self.read(*index);
                         }
                         None => return Err(self.extreme(region, *index)),
@@ -173,6 +173,13 @@ impl Columns {
         let column = &self.columns[index];
         let nth = column.heading.place == Some(0) || matches!(column.value().map(|v| v.at), Some(At::Nth(_)));
         nth && column.heading.has(Atom::After) || self.number().is_some_and(|(_, sure)| sure)
+    }
+
+    /// Whether the greatest height that a column holds is that of a flight, and of no repeats: it is
+    /// one after an impact, `max. height after the bounce`.
+    fn highest(&self, index: usize) -> bool {
+        let heading = &self.columns[index].heading;
+        self.columns[index].holds(What::Height) && heading.has(Atom::After) && !heading.has(Atom::Trial)
     }
 
     /// A column that plays another part is that of the readings.

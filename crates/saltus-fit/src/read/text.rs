@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::ops::Range;
 
 use super::cell::{self, Cell};
+use super::digits;
 use super::encoding::decoded;
 use super::forms::{self, named_list};
 use super::heading::{Heading, Meaning};
@@ -34,7 +35,9 @@ pub(super) fn text<'a>(name: &str, bytes: &'a [u8]) -> Result<Text<'a>, TableErr
     // Old Macintosh files end their lines with a lone carriage return.
     let old = text.contains('\r') && !text.contains('\n');
     let text = if old { Cow::Owned(text.replace('\r', "\n")) } else { text };
+    let text = digits::plain(&text).map_or(text, Cow::Owned);
     let text = counted(&text).map_or(text, Cow::Owned);
+    let text = paged(&text).map_or(text, Cow::Owned);
     let text = wrapped::timecoded(&text).map_or(text, Cow::Owned);
     let text = match names_in_comment(&text) {
         Some(at) => Cow::Owned([&text[..at], text[at..].trim_start_matches(['#', ' '])].concat()),
@@ -60,6 +63,20 @@ pub(super) fn text<'a>(name: &str, bytes: &'a [u8]) -> Result<Text<'a>, TableErr
     let text = if typed { [forms::bulleted, forms::table].into_iter().fold(text, taken) } else { text };
     let text = aligned(&text).map_or(text, Cow::Owned);
     Ok(Text { text, encoding })
+}
+
+/// A text without the numbers of its pages, `2 / 4` in a line by itself, which is blank instead;
+/// `None` where there are none.
+fn paged(text: &str) -> Option<String> {
+    let page = |line: &str| {
+        let (page, of) = line.trim().split_once('/')?;
+        let (page, of): (u32, u32) = (page.trim_end().parse().ok()?, of.trim_start().parse().ok()?);
+        (page > 0 && page <= of).then_some(())
+    };
+    let found = text.lines().filter(|line| page(line).is_some()).count();
+    // A column of marks, `7/10`, is none.
+    let blank = |line: &str| if page(line.trim_end()).is_some() { "\n".to_owned() } else { line.to_owned() };
+    (found == 1).then(|| text.split_inclusive('\n').map(blank).collect())
 }
 
 /// Whether lines of numbers and nothing else are so many beside all others that a program wrote

@@ -5,6 +5,7 @@ use super::aside::LeftAside;
 use super::cell::{Cell, spaced};
 use super::clause::{clauses, drop, error, frame_rate, lengths, names_rate, of_clauses};
 use super::datum::{self, Datum};
+use super::forms::told;
 use super::grid::{Grid, shown};
 use super::heading::{At, DropHeight, Heading, Meaning, What};
 use super::phrases::Phrase;
@@ -94,6 +95,7 @@ pub(super) fn stated(region: &Region<'_>) -> Stated {
     let [own, names] =
         [&said, &names].map(|lines| lines.iter().map(|(line, text)| (*line, text.as_str())).collect::<Vec<_>>());
     found.datum = datum::stated(&region.view.grid.comments().take(ROWS).chain(own).collect::<Vec<_>>(), &names);
+    let wrapped = said.windows(2).find_map(|pair| Some((drop(&sentence(pair)?)?, pair[0].0)));
     for (row, (line, text)) in rows.into_iter().zip(said) {
         let cells: Vec<&str> = cells(row).collect();
         let (fps, height, sigma) =
@@ -120,12 +122,20 @@ pub(super) fn stated(region: &Region<'_>) -> Stated {
         found.frames |= cells.iter().any(|cell| counts_frames(cell));
         found.name = if cells.len() == 1 && row < region.header_row { text } else { found.name };
     }
-    found.drop = found.drop.or_else(commented);
+    found.drop = found.drop.or(wrapped).or_else(commented);
     // Numbers of frames that a title speaks of are times, where it names no other quantity.
     if let (true, Some((fps, _)), (None, None)) = (found.frames, found.fps, found.units) {
         found.units.0 = Some(Unit::frame(fps));
     }
     found
+}
+
+/// A sentence that goes on in the next line, `dropped three times` above `from 200 cm`: the one
+/// does not end, and the other begins with no capital.
+fn sentence(pair: &[(u64, String)]) -> Option<String> {
+    let [(above, first), (below, second)] = pair else { return None };
+    let goes_on = !first.trim_end().ends_with(['.', ':', '!', '?', ';', ')']) && second.starts_with(char::is_lowercase);
+    (below.checked_sub(1) == Some(*above) && goes_on && told(first)).then(|| format!("{} {second}", first.trim_end()))
 }
 
 /// The height of release that a name, a number and its unit state in cells of their own, whatever

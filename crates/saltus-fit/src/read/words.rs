@@ -125,6 +125,7 @@ pub(super) fn split(text: &str) -> Vec<Word> {
             words[n].kind = Kind::Known(&[Atom::Filler]);
         }
     }
+    highest(&mut words);
     fallen(&mut words);
     let_loose(&mut words);
     under_a_tool(&mut words);
@@ -186,6 +187,17 @@ fn counted_and(words: &mut [Word]) {
         let after = words[n + 1..].iter().find(|w| !matches!(w.kind, Kind::Known([Atom::Filler]) | Kind::Letter));
         if words[n].text == "e" && counts(&words[n - 1]) && after.is_some_and(counts) {
             words[n].kind = Kind::Known(&[Atom::Filler]);
+        }
+    }
+}
+
+/// The point that is the highest is the top of a flight, also where it stands first: `punto más
+/// alto`.
+fn highest(words: &mut [Word]) {
+    for n in 1..words.len() {
+        if words[n].is(Atom::Max) && Phrase::Point.is(&folded(&words[n - 1].text)) {
+            words[n - 1].kind = Kind::Known(&[Atom::Filler]);
+            words[n].kind = Kind::Known(&[Atom::Rebound, Atom::Top]);
         }
     }
 }
@@ -364,7 +376,7 @@ pub(super) fn pieces(text: &str) -> Vec<String> {
             && (known(pair[0].split(end).rfind(|w| !w.is_empty())) || known(pair[1].split(end).find(|w| !w.is_empty())))
     };
     let mut found: Vec<String> = spelt
-        .split(|c: char| !c.is_alphanumeric() && !matches!(c, '\u{300}'..='\u{36f}' | '°' | 'º' | 'ª'))
+        .split(|c: char| !c.is_alphanumeric() && !marks(c) && !matches!(c, '°' | 'º' | 'ª'))
         .filter(|piece| !piece.is_empty())
         .flat_map(parted)
         .collect();
@@ -372,6 +384,15 @@ pub(super) fn pieces(text: &str) -> Vec<String> {
         found.push("ratio".to_owned());
     }
     found
+}
+
+/// Whether a character is a mark of the letter before it, and no letter by itself: an accent, the
+/// sign that a consonant of an Indian script has no vowel, the points of Hebrew and what shortens
+/// its words.
+fn marks(c: char) -> bool {
+    // The second half of the block of each Indian script begins with its sign of no vowel.
+    let bare = matches!(c, '\u{900}'..='\u{d7f}') && matches!(u32::from(c) % 0x80, 0x3c | 0x4d);
+    bare || matches!(c, '\u{300}'..='\u{36f}' | '\u{591}'..='\u{5c7}' | '\u{5f3}' | '\u{5f4}' | '\u{e47}'..='\u{e4e}')
 }
 
 /// The words of a piece: of a script that parts none by blanks the longest that are known, and what

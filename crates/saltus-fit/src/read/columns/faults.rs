@@ -15,6 +15,7 @@ use crate::read::named::event;
 use crate::read::region::Region;
 use crate::read::units::Dimension;
 use crate::read::vocabulary::{Atom, folded, nearest};
+use crate::read::words::{ARTICLE, Kind as WordKind, Word, split};
 
 /// A column that names a ball or a surface, and what its heading says beside that.
 struct Named {
@@ -177,6 +178,14 @@ impl Columns {
     /// itself beside those, where the cells are numbers as theirs are.
     pub(super) fn siblings(&mut self, region: &Region<'_>) {
         let without = |text: &str, name: &str| text.replacen(name, "", 1).split_whitespace().collect::<String>();
+        // What stands between the words of a name is part of it: `minge de handbal`.
+        let bare = |text: &str, group: &str| {
+            let article =
+                |w: &Word| matches!(w.kind, WordKind::Known([Atom::Filler])) && w.text.chars().count() < ARTICLE;
+            let within = |w: &Word| group.split(' ').any(|part| part == w.text);
+            let whole = !text.contains(group) && split(text).iter().all(|w| within(w) || article(w));
+            if whole { String::new() } else { without(text, group) }
+        };
         let of = |c: &Column| c.value().or_else(|| c.heading.value().filter(|_| c.kind == Kind::Share)).cloned();
         let mut named: Vec<Named> = (0..)
             .zip(&self.columns)
@@ -185,7 +194,7 @@ impl Columns {
             .filter(|(_, _, v)| !v.group.is_empty() && v.role == Role::Reading)
             .map(|(index, c, value)| Named {
                 index,
-                rest: without(&c.heading.text, &value.group),
+                rest: bare(&c.heading.text, &value.group),
                 value,
                 kind: c.kind.clone(),
             })

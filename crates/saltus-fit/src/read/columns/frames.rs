@@ -84,10 +84,19 @@ impl Columns {
         if fps.is_none() {
             self.notes.push(Note::AnyRate { column: name, rate });
         }
-        let heading = &self.columns[index].heading;
-        let between = heading.has(Atom::Between) || heading.has(Atom::Interval);
-        self.columns[index].kind = Kind::Value(Value::of(if between { What::Interval } else { What::Time }));
-        self.columns[index].unit = Some(Unit::frame(rate));
+        let all: Vec<usize> = self.all(&Kind::Frame).collect();
+        let names: Vec<String> = all.iter().map(|&n| self.columns[n].heading.labels()).collect();
+        // Columns that name a ball each are of these: `golf ball (frame)` beside `tennis (frame)`.
+        let apart = names.iter().enumerate().all(|(n, name)| !name.is_empty() && !names[..n].contains(name));
+        let several = all.len() > 1 && apart;
+        for (n, group) in all.into_iter().zip(names).filter(|(n, _)| several || *n == index) {
+            let heading = &self.columns[n].heading;
+            let between = heading.has(Atom::Between) || heading.has(Atom::Interval);
+            let group = if several { group } else { String::new() };
+            let what = if between { What::Interval } else { What::Time };
+            self.columns[n].kind = Kind::Value(Value { group, ..Value::of(what) });
+            self.columns[n].unit = Some(Unit::frame(rate));
+        }
         Ok(())
     }
 

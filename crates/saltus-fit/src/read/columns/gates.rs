@@ -8,7 +8,7 @@ use crate::read::heading::{At, Role, Value, What};
 use crate::read::phrases::Phrase;
 use crate::read::region::Region;
 use crate::read::units::{Dimension, Unit};
-use crate::read::vocabulary::{Atom, folded};
+use crate::read::vocabulary::{Atom, folded, meanings};
 use crate::read::words::{has_word, pieces};
 use crate::statistics::median;
 
@@ -33,7 +33,32 @@ impl Column {
         let name = folded(self.heading.text.split(['(', '[']).next().unwrap_or_default());
         phrase.is(name.trim())
     }
+
+    /// Whether a phrase of this kind ends its heading, `let go from (cm)`, or begins it before a
+    /// height, `из высоты`, and it is of no time and of no speed.
+    fn leads(&self, phrase: Phrase) -> bool {
+        let all = words(self);
+        let unit = self.heading.unit.is_some() && all.last().is_some_and(|word| Unit::parse(word).is_some());
+        let bare = &all[..all.len() - usize::from(unit && all.len() > 1)];
+        let is = |words: &[String]| !words.is_empty() && phrase.is(&words.join(" "));
+        // `s` is a unit, and leads in Croatian.
+        let end = |words: &[String]| (1..=words.len().min(LEADS)).any(|n| is(&words[words.len() - n..]));
+        let ends = end(bare) || end(&all);
+        let height = |word: &String| meanings(word).is_some_and(|atoms| atoms.contains(&Atom::Height));
+        let before = |words: &[String]| {
+            (1..=words.len().min(LEADS)).any(|n| is(&words[..n]) && words.get(n).is_some_and(height))
+        };
+        let last = |words: &[String]| words.split_last().is_some_and(|(last, rest)| height(last) && end(rest));
+        let begins = before(bare) || last(bare);
+        let other = [Atom::Time, Atom::Interval, Atom::Total, Atom::Speed, Atom::Frame];
+        // `no.` counts, and leads in Latvian.
+        let length = self.unit.map_or(bare.len() > 1, |unit| unit.dimension == Dimension::Length);
+        (ends || begins) && length && !other.iter().any(|atom| self.heading.has(*atom))
+    }
 }
+
+/// What leads to a height is of no more words: `back up to`.
+const LEADS: usize = 3;
 
 impl Columns {
     /// `before` beside `after`, where a line states the unit of speeds and no other: all columns
@@ -65,6 +90,7 @@ impl Columns {
         self.flights(region);
         self.up_to_from(region);
         self.released_from();
+        self.led_from_and_to(region);
         self.until_hit(region);
         self.until_rest(region);
     }
@@ -286,6 +312,39 @@ impl Columns {
         let up = |c: &Column| height(c) && c.heading.has(Atom::Rebound) && !leads(c);
         let Some((from, _)) = self.pair(from, up) else { return };
         if self.values().filter(|(_, _, v)| v.what == What::Height).count() == 2 {
+            self.becomes(from, What::Height, At::Release);
+        }
+    }
+
+    /// `paleista iš` beside `atšoko iki`, `let go from` beside `got to`, whatever the verbs: what
+    /// begins and ends so is where a ball was dropped from and where it came up to, if that is
+    /// lower in every row. What a ball was dropped from may stand beside names of balls as well.
+    fn led_from_and_to(&mut self, region: &Region<'_>) {
+        let numbers = |n: usize| region.rows.iter().any(|&row| region.view.is_number(row, n));
+        let given = |c: &Column| c.value().is_some_and(|v| v.at == At::Release && v.what == What::Height);
+        let from = |c: &Column| c.leads(Phrase::Whence) && !c.heading.has(Atom::Rebound);
+        let to = |c: &Column| c.leads(Phrase::Whither) && !c.leads(Phrase::Whence) && !c.heading.has(Atom::Release);
+        let Some(from) = self.only(from).filter(|n| numbers(*n)) else { return };
+        if let Some(to) = self.only(to).filter(|n| numbers(*n)) {
+            let si = |row: usize, n: usize| {
+                let number = region.view.number(row, n)?;
+                Some(self.columns[n].unit.map_or(number, |unit| unit.si(number)))
+            };
+            let lower = |&row: &usize| Some(si(row, to)? < si(row, from)?);
+            if region.rows.iter().filter_map(lower).all(|lower| lower) {
+                self.becomes(from, What::Height, At::Release);
+                self.becomes(to, What::Height, At::Row);
+            }
+            return;
+        }
+        let sized = |n: usize| self.columns[n].unit.is_some_and(|unit| unit.dimension == Dimension::Length);
+        let others: Vec<usize> = (0..self.columns.len()).filter(|n| *n != from && numbers(*n)).collect();
+        let column = |n: &usize| &self.columns[*n];
+        let alone = !others.iter().any(|n| given(column(n)) || column(n).unit.is_some());
+        let rose =
+            |n: &usize| column(n).holds(What::Height) && column(n).heading.has(Atom::Rebound) && !given(column(n));
+        let beside = self.columns[from].heading.has(Atom::Release) || others.iter().filter(|n| rose(n)).count() == 1;
+        if sized(from) && !others.is_empty() && (alone || beside && !others.iter().any(|n| given(column(n)))) {
             self.becomes(from, What::Height, At::Release);
         }
     }

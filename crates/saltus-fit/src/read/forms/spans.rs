@@ -11,7 +11,10 @@ use super::super::words::{Kind, Word, split};
 
 /// The bounce that a line begins at, and its time; whether that bears a unit of time.
 fn span(line: &str) -> Option<(usize, &str, bool)> {
-    let (name, value) = line.split_once(": ").or_else(|| line.split_once('=')).or_else(|| line.split_once('\t'))?;
+    let marked = line.split_once(": ").or_else(|| line.split_once('=')).or_else(|| line.split_once('\t'));
+    // Blanks may part them, where the time bears its unit: `1 -> 2   746 ms`.
+    let (name, value) = marked
+        .or_else(|| line.trim_end().rsplit_once("  ").filter(|(_, value)| value.contains(char::is_alphabetic)))?;
     let Cell::Number(m) = cell::read(value.trim(), false) else { return None };
     let timed = m.unit.is_some_and(|unit| unit.dimension == Dimension::Time);
     let words = split(name);

@@ -1,5 +1,16 @@
 //! Tables as a wiki writes them.
 
+/// A table of `DokuWiki`, whose names stand behind `^`, with `|` in place of it; `None` if it is none.
+pub(super) fn marked(text: &str) -> Option<String> {
+    let of_names = |line: &str| line.starts_with('^') && line.trim_end().ends_with(['^', '|']);
+    if !text.lines().any(of_names) {
+        return None;
+    }
+    let row = |line: &str| of_names(line) || line.starts_with('|');
+    let spelt = |line: &str| if row(line) { line.replace('^', "|") } else { line.replace("==", "  ") };
+    Some(text.lines().map(spelt).collect::<Vec<_>>().join("\n") + "\n")
+}
+
 /// A table of `MediaWiki`: rows parted by `|-`, cells behind `!` and `|`; `None` if it is none.
 pub(super) fn table(text: &str) -> Option<String> {
     let begins = |mark: &str| text.lines().any(|line| line.trim_start().starts_with(mark));

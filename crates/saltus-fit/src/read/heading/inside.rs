@@ -6,7 +6,7 @@ use std::borrow::Cow;
 use super::super::cell::{Cell, fraction, read};
 use super::super::phrases::Phrase;
 use super::super::units::{Dimension, Scale, Unit};
-use super::super::vocabulary::{Atom, folded, meanings};
+use super::super::vocabulary::{Atom, folded, meanings, unparted};
 use super::super::words::{Kind, Word, lets_loose, split};
 
 /// A height of release that a heading or a title states.
@@ -29,7 +29,7 @@ impl DropHeight {
 }
 
 /// What rates of frames and of samples are written in, and what one of them is in 1/s.
-const RATES: [(&str, f64); 22] = [
+const RATES: [(&str, f64); 65] = [
     ("fps", 1.0),
     ("frames per second", 1.0),
     ("frames/second", 1.0),
@@ -52,6 +52,49 @@ const RATES: [(&str, f64); 22] = [
     ("cuadros por segundo", 1.0),
     ("quadros por segundo", 1.0),
     ("beelden per seconde", 1.0),
+    ("frames in a second", 1.0),
+    ("bilder i sekundet", 1.0),
+    ("bilder per sekund", 1.0),
+    ("billeder i sekundet", 1.0),
+    ("billeder pr. sekund", 1.0),
+    ("billeder/s", 1.0),
+    ("bilder/sek", 1.0),
+    ("kuvaa sekunnissa", 1.0),
+    ("kuvaa/s", 1.0),
+    ("klatek na sekundę", 1.0),
+    ("klatki na sekundę", 1.0),
+    ("klatek/s", 1.0),
+    ("snímků za sekundu", 1.0),
+    ("snímků/s", 1.0),
+    ("snímok za sekundu", 1.0),
+    ("snímok/s", 1.0),
+    ("képkocka/s", 1.0),
+    ("képkocka másodpercenként", 1.0),
+    ("kare/s", 1.0),
+    ("kare/saniye", 1.0),
+    ("кадров в секунду", 1.0),
+    ("кадра в секунду", 1.0),
+    ("кадров/с", 1.0),
+    ("кадр/с", 1.0),
+    ("кадъра в секунда", 1.0),
+    ("кадрів на секунду", 1.0),
+    ("кадрів/с", 1.0),
+    ("cadre pe secundă", 1.0),
+    ("cadre/s", 1.0),
+    ("καρέ ανά δευτερόλεπτο", 1.0),
+    ("fotogrames per segon", 1.0),
+    ("beelden/s", 1.0),
+    ("beelden per sec", 1.0),
+    ("コマ/秒", 1.0),
+    ("フレーム/秒", 1.0),
+    ("帧/秒", 1.0),
+    ("幀/秒", 1.0),
+    ("프레임/초", 1.0),
+    ("kadrų per sekundę", 1.0),
+    ("kadri sekundē", 1.0),
+    ("kaadrit sekundis", 1.0),
+    ("sličica u sekundi", 1.0),
+    ("sličic na sekundo", 1.0),
 ];
 
 /// A text of which no colon parts the end of a number in an order from it, as in Swedish: `1:a
@@ -132,11 +175,18 @@ pub(in crate::read) fn released(text: &str) -> Option<(DropHeight, &str, &str)> 
         let from = Phrase::From.is(word);
         let parts = [&text[..at], &text[at + end..]];
         let word_of_release = |part: &&str| {
-            folded(part).split(|c: char| !c.is_alphanumeric()).any(|word| is(word, Atom::Release)) || lets_loose(part)
+            let plain = folded(part).split(|c: char| !c.is_alphanumeric()).any(|word| is(word, Atom::Release));
+            let joined = part.contains(unparted) && split(part).iter().any(|word| word.is(Atom::Release));
+            plain || joined || lets_loose(part)
         };
         let fits = length && value > 0.0 && !counted && (from || parts.iter().any(word_of_release));
         fits.then_some((DropHeight { text: written, value, unit, sign: 0 }, parts[0], parts[1]))
     })
+}
+
+/// Whether a letter is of the Korean script.
+fn hangul(c: char) -> bool {
+    matches!(c, '\u{ac00}'..='\u{d7a3}')
 }
 
 /// A length at the start of a text: its number, its unit, as it is written, and where it ends.
@@ -167,7 +217,9 @@ fn part(text: &str) -> Option<Length> {
     let (value, after) =
         fraction(after).map_or((value, after), |(over, under, rest)| (value + over / under, rest.trim_start()));
     let number = text[..text.len() - after.len()].trim_end();
-    let end = after.find(|c: char| !c.is_alphabetic() && !matches!(c, '"' | '\'')).unwrap_or(after.len());
+    // Behind the unit words may follow that no blank parts from it: `2m高さ`.
+    let other = |c: char| after.starts_with(|c: char| c.is_ascii_alphabetic()) && (unparted(c) || hangul(c));
+    let end = after.find(|c: char| other(c) || !c.is_alphabetic() && !matches!(c, '"' | '\'')).unwrap_or(after.len());
     let unit = Unit::parse(&after[..end])?;
     Some((value, unit, format!("{number} {}", &after[..end]), text.len() - after.len() + end))
 }
@@ -197,6 +249,14 @@ pub(super) fn hundredths(words: &mut Vec<Word>) -> Option<bool> {
                 | "от"
         )
     });
+    // `Fallhöhe` in the genitive before the sign, as in Turkish or Japanese: `落下高さの%`.
+    let ahead =
+        words[..at].iter().rposition(|w| !matches!(w.kind, Kind::Known(_)) || !of_a_height(w)).map_or(0, |n| n + 1);
+    let behind = words[ahead..at].iter().any(|w| w.is(Atom::Height))
+        && words[ahead..at].iter().any(|w| w.is(Atom::Release) || w.is(Atom::Before));
+    if !of && behind && ahead > 0 && words.len() <= at + 2 {
+        return Some(words.drain(ahead..).any(|w| w.is(Atom::Before)));
+    }
     let content =
         words[at..].iter().any(|w| w.is(Atom::Derived) || w.is(Atom::Lost) || matches!(w.kind, Kind::Unknown));
     if !of || content {
@@ -204,6 +264,12 @@ pub(super) fn hundredths(words: &mut Vec<Word>) -> Option<bool> {
     }
     let before = words.drain(at..).any(|w| w.is(Atom::Before));
     Some(before)
+}
+
+/// Whether a word is of the height that something began at, and of nothing else.
+fn of_a_height(word: &Word) -> bool {
+    let of = [Atom::Height, Atom::Release, Atom::Before, Atom::Filler];
+    of.iter().any(|atom| word.is(*atom)) && !word.is(Atom::Rebound)
 }
 
 /// What a ratio of heights is a part of.

@@ -57,6 +57,7 @@ impl Heading {
             && !has(Height)
             && !has(Position)
             && !((has(Atom::Frame) || has(Atom::Time)) && has(Atom::Impact))
+            && !self.counts_hits()
             && self.unit.is_none_or(|u| u.dimension == Dimension::Other);
         if setting && !has(Label) {
             return Meaning::Setting;
@@ -88,6 +89,12 @@ impl Heading {
             return Meaning::Aside(Why::Other);
         }
         self.reading(what, numbers, run)
+    }
+
+    /// Whether it counts the times that a ball hits the floor, `hit on the floor no.`, and tells no
+    /// floors apart.
+    fn counts_hits(&self) -> bool {
+        [Atom::Number, Atom::Impact, Atom::Floor].iter().all(|atom| self.has(*atom)) && !self.has(Atom::Label)
     }
 
     /// The quantity that words and unit name; `placed` if they say where a release is.
@@ -143,7 +150,7 @@ impl Heading {
         if has(Repeat) || has(Trial) && (has(Number) || !has(Release)) {
             return Some(Meaning::Trial);
         }
-        if has(Group) {
+        if has(Group) && !self.counts_hits() {
             return Some(Meaning::Setting);
         }
         if has(Number) || has(Impact) {
@@ -272,7 +279,9 @@ impl Heading {
             Kind::Known(_) => words[n].text == "in" && !named(n + 1) && !words[n - 1].is(Atom::Speed),
             _ => Unit::parse(&words[n].text).is_some(),
         };
-        let mut found: Vec<usize> = (1..words.len()).filter(|&n| is_unit(n)).collect();
+        // A letter behind what counts is short for what is counted: `č. m.`.
+        let counted = |n: usize| words[n].text.chars().count() == 1 && words[..n].iter().all(|w| w.is(Atom::Number));
+        let mut found: Vec<usize> = (1..words.len()).filter(|&n| is_unit(n) && !counted(n)).collect();
         if found.len() > 1 && Phrase::In.is(&words[found[0]].text) {
             found.remove(0);
         }

@@ -9,6 +9,7 @@ use super::super::phrases::Phrase;
 use super::super::sequence::of_samples;
 use super::super::units::{Dimension, Unit};
 use super::super::vocabulary::{ROWS, meanings};
+use super::super::words::{numbers, split};
 use super::legend::Legend;
 
 /// A header: its names, the first of its lines, the first row below, and how much of it is
@@ -287,9 +288,16 @@ pub(super) fn both(upper: &[String], lower: &[String]) -> Option<Vec<String>> {
     if upper.windows(2).any(|pair| pair[0].ends_with(':') && !pair[1].is_empty()) {
         return None;
     }
-    // A title stands alone, above the first name.
+    // A title stands alone, above the first name, unless it names a quantity, its unit and no first
+    // column: `Time between bounces (s)` above `1st-2nd`, `2nd-3rd`.
     let first = |line: &[String]| line.iter().position(|cell| !cell.is_empty());
-    if upper.iter().filter(|cell| !cell.is_empty()).count() == 1 && first(upper) <= first(lower) {
+    let spans = || {
+        let (at, name) = first(upper).map_or((0, String::new()), |at| (at, upper[at].clone()));
+        let above = Heading::parse(&name);
+        let read = above.unknown.is_empty() && above.unit.is_some() && above.value().is_some();
+        at > 0 && first(lower) == Some(at) && read && lower[at..].iter().filter(|cell| flight(cell)).count() > 1
+    };
+    if upper.iter().filter(|cell| !cell.is_empty()).count() == 1 && first(upper) <= first(lower) && !spans() {
         return None;
     }
     // A merged cell holds its text in the first of the columns that it spans.
@@ -395,6 +403,11 @@ pub(in crate::read) fn repeated(header: &[String]) -> Option<Vec<Range<usize>>> 
     (groups.len() > 1 && same).then_some(groups)
 }
 
+/// Whether a name is of two bounces, one after the other: `1st-2nd`.
+fn flight(name: &str) -> bool {
+    matches!(numbers(&split(name)).bounce.as_slice(), [one, other] if *one > 0 && *other == one + 1)
+}
+
 /// What an upper name adds to a lower: `Rebound (cm)` above `Trial 1`, whose unit is for both, as
 /// that of `Height (cm)` is above `release`.
 fn spanned(name: &str, lower: &str) -> String {
@@ -406,7 +419,8 @@ fn spanned(name: &str, lower: &str) -> String {
     }
     let key = matches!(own.meaning, Meaning::Trial | Meaning::Number { .. } | Meaning::Event | Meaning::Frame);
     let said = key && own.unknown.is_empty() || own.value().is_some_and(|v| v.what != What::Unsaid);
-    if said || matches!(own.meaning, Meaning::Aside(_)) && own.unknown.is_empty() {
+    let aside = matches!(own.meaning, Meaning::Aside(_)) && own.unknown.is_empty();
+    if said || aside && !(flight(lower) && above.unit.is_some()) {
         lower.to_owned()
     } else {
         format!("{lower}, {name}")
