@@ -187,7 +187,7 @@ proptest! {
         prop_assert!(found.len() == 2 && near(found[0], one) && near(found[1], other), "{:?} {}", found, text);
     }
 
-    /// Hundredths of the drop height that say so in front of the sign, and bear it before the number.
+    /// Hundredths of the drop height say so in front of the sign, and bear it before the number.
     #[test]
     fn hundredths_say_of_what_they_are_before_the_sign(
         e in 0.6..0.85_f64,

@@ -175,8 +175,8 @@ impl Columns {
         nth && column.heading.has(Atom::After) || self.number().is_some_and(|(_, sure)| sure)
     }
 
-    /// Whether the greatest height that a column holds is that of a flight, and of no repeats: it is
-    /// one after an impact, `max. height after the bounce`.
+    /// Whether the greatest height that a column holds is that of a flight, and of no repeats: it
+    /// is one after an impact, `max. height after the bounce`.
     fn highest(&self, index: usize) -> bool {
         let heading = &self.columns[index].heading;
         self.columns[index].holds(What::Height) && heading.has(Atom::After) && !heading.has(Atom::Trial)

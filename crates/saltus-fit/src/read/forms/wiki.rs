@@ -1,6 +1,7 @@
 //! Tables as a wiki writes them.
 
-/// A table of `DokuWiki`, whose names stand behind `^`, with `|` in place of it; `None` if it is none.
+/// A table of `DokuWiki`, whose names stand behind `^`, with `|` in place of it; `None` if it is
+/// none.
 pub(super) fn marked(text: &str) -> Option<String> {
     let of_names = |line: &str| line.starts_with('^') && line.trim_end().ends_with(['^', '|']);
     if !text.lines().any(of_names) {
