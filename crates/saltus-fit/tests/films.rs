@@ -289,6 +289,67 @@ fn a_film_of_two_balls_in_turn_is_doubted() {
     }
 }
 
+/// What is no motion of one ball by itself is not trusted for its first flights: a film that goes on
+/// at another scale, or a ball that a hand drives down again from every top. A ball that is caught
+/// and carried away is.
+#[test]
+fn a_ball_that_is_driven_on_is_doubted() {
+    const RATE: f64 = 60.0;
+    let other = |report: &Report| report.findings().iter().any(|f| matches!(f.kind, FindingKind::OtherMotion { .. }));
+    for n in 0..cases(48) {
+        let mut noise = Noise(u64::from(n) + 900);
+        let ball = |noise: &mut Noise, cor: fn(f64) -> f64| Ball {
+            drop: 0.8 + 0.4 * noise.uniform(),
+            release: 0.1,
+            gravity: 9.81,
+            drag: 0.0,
+            cor,
+            contact: Contact::Instant,
+        };
+        let cor = CORS[1 + n as usize % 3];
+        // Up to a time within the flight after the second contact.
+        let fall = |drop: f64| (2.0 * drop / 9.81).sqrt();
+        let first = ball(&mut noise, cor);
+        let (e, begun) = (cor(1.0), 0.1 + fall(first.drop));
+        let flight = 2.0 * e * fall(first.drop);
+        let end = begun + flight + e * flight * (0.2 + 0.6 * noise.uniform());
+        let mut rows = first.film(RATE, end);
+        let later = |rows: &[(f64, f64)]| rows.len() as f64 / RATE;
+        match n % 4 {
+            0 | 1 => {
+                let scale = if n % 4 == 0 { 0.35 + 0.25 * noise.uniform() } else { 1.7 + noise.uniform() };
+                let other = ball(&mut noise, CORS[1 + (n as usize + 1) % 3]).film(RATE, 3.0);
+                for (_, height) in &other[(0.3 * RATE) as usize..] {
+                    rows.push((later(&rows), scale * height));
+                }
+            }
+            2 => {
+                let (top, falls) = (e * e * first.drop, 14.0 + 10.0 * noise.uniform());
+                let (up, down) = ((2.0 * top / 9.81).sqrt(), (2.0 * top / falls).sqrt());
+                rows.truncate((RATE * (begun + flight)) as usize);
+                for _ in 0..(2.0 * RATE) as usize {
+                    let t = (later(&rows) - begun - flight).rem_euclid(up + down);
+                    let below = if t < up { 0.5 * 9.81 * (up - t).powi(2) } else { 0.5 * falls * (t - up).powi(2) };
+                    rows.push((later(&rows), top - below));
+                }
+            }
+            _ => {
+                let (held, up) = (rows[rows.len() - 1].1, 0.3 + 0.6 * noise.uniform());
+                for k in 0..(1.5 * RATE) as usize {
+                    let part = (k as f64 / RATE).min(1.0);
+                    rows.push((later(&rows), held + 0.5 * up * (1.0 - (std::f64::consts::PI * part).cos())));
+                }
+            }
+        }
+        let report = report(&csv(&noisy(&rows, &mut noise, 1e-3)));
+        if n % 4 == 3 {
+            assert!(!other(&report) && report.verdict() == Verdict::Trusted, "{n} {report}");
+        } else {
+            assert_ne!(report.verdict(), Verdict::Trusted, "{n} {report}");
+        }
+    }
+}
+
 /// What swings, or stands on a spring, bounces nowhere: no such motion is trusted, whatever its
 /// rate, its noise and how fast it dies away.
 #[test]

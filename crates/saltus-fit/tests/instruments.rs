@@ -410,3 +410,101 @@ fn a_clock_of_a_film_needs_no_name() {
     let report = fit(&format!("{bodies}{text}"));
     assert!(near(report.cor().unwrap().value, 0.72), "{report}");
 }
+
+/// Bodies that a program follows in one film, a row for each in each frame or side by side: the
+/// ball is the one that moves, in whatever order the rows are, and along whichever axis it falls.
+#[test]
+fn bodies_of_one_film() {
+    for n in 0..cases(24) {
+        let mut noise = Noise(u64::from(n) + 77);
+        let e = 0.6 + 0.25 * noise.uniform();
+        let (rate, scale) = (60.0, 500.0 + 400.0 * noise.uniform());
+        // Heights in pixels above the floor, from a fall of 1 m on.
+        let (mut heights, mut height, mut speed) = (Vec::new(), 1.0_f64, 0.0_f64);
+        for step in 0..200 * 160 {
+            speed -= 9.81 / (160.0 * rate);
+            height += speed / (160.0 * rate);
+            if height < 0.0 && speed < 0.0 {
+                (speed, height) = (-e * speed, 0.0);
+            }
+            if step % 160 == 0 {
+                heights.push(scale * height + noise.normal(0.6));
+            }
+        }
+        let rows = || heights.iter().enumerate().map(|(frame, height)| (frame, 950.0 - height));
+        let text = match n % 4 {
+            0 => {
+                let head = "LABEL,ID,TRACK_ID,QUALITY,POSITION_X,POSITION_Y,POSITION_T,FRAME,RADIUS\n\
+                            Label,Spot ID,Track ID,Quality,X,Y,T,Frame,R\n,,,(quality),(pixel),(pixel),(sec),,(pixel)\n";
+                let spot = |(frame, y): (usize, f64)| {
+                    let t = frame as f64 / rate;
+                    format!(
+                        "ID{frame},{frame},0,40.1,{:.1},{y:.2},{t:.4},{frame},9\nID9{frame},9{frame},1,12,50,700.1,{t:.4},{frame},9\n",
+                        200.0 + t
+                    )
+                };
+                // In the order of their quality.
+                let mut spots: Vec<String> = rows().map(spot).collect();
+                spots
+                    .sort_by_key(|spot| spot.bytes().fold(7_u64, |hash, byte| hash.wrapping_mul(31) + u64::from(byte)));
+                format!("{head}{}", spots.concat())
+            }
+            1 => {
+                let boxes = |(frame, y): (usize, f64)| {
+                    let still = 900.0 + noise.normal(0.4);
+                    format!(
+                        "{frame},4,person,0.9,100,210,300,{still:.1}\n{frame},7,sports ball,0.8,400,{:.1},430,{y:.1}\n",
+                        y - 30.0
+                    )
+                };
+                format!("frame,track_id,class,conf,x1,y1,x2,y2\n{}", rows().map(boxes).collect::<String>())
+            }
+            2 => {
+                let particle = |(frame, y): (usize, f64)| {
+                    format!("{},27.1,201,127,255,12.1,{y:.3},12.2,{:.3},0.88,{}\n", frame + 1, y + 0.1, frame + 1)
+                };
+                format!(" ,Area,Mean,Min,Max,X,Y,XM,YM,Circ.,Slice\n{}", rows().map(particle).collect::<String>())
+            }
+            _ => {
+                let (up, along) = if noise.uniform() < 0.5 { (1, 2) } else { (2, 1) };
+                let marker = |(frame, height): (usize, &f64)| {
+                    let mut place = [3.0 + noise.normal(0.3), 0.0, 0.0];
+                    (place[up], place[along]) = (*height, 80.0 + 0.2 * frame as f64 + noise.normal(0.3));
+                    format!(
+                        "{}\t{:.3}\t{:.3}\t{:.3}\t{:.3}\n",
+                        frame + 1,
+                        frame as f64 / rate,
+                        place[0],
+                        place[1],
+                        place[2]
+                    )
+                };
+                let places: String = heights.iter().enumerate().map(marker).collect();
+                format!(
+                    "PathFileType\t4\t(X/Y/Z)\tdrop.trc\nDataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\n60.00\t60.00\t200\t1\tmm\n\
+                     Frame#\tTime\tBALL\t\t\n\t\tX1\tY1\tZ1\n\n{places}"
+                )
+            }
+        };
+        let report = fit(&text);
+        let cor = report.cor().unwrap_or_else(|| panic!("{n} {report}"));
+        assert!((cor.value - e).abs() < 0.01, "{n} {e} {report}");
+        assert_eq!(report.verdict(), Verdict::Trusted, "{n} {e} {report}");
+    }
+}
+
+/// A column that stands in a table twice, as the times before each curve, is read once.
+#[test]
+fn times_before_each_curve() {
+    for n in 0..cases(16) {
+        let mut noise = Noise(u64::from(n) + 5);
+        let e = 0.6 + 0.25 * noise.uniform();
+        let (mut t, mut lasts, mut text) = (0.45, 0.9 * e, "Temps (s);Temps (s);Rebond\n".to_owned());
+        for bounce in 1..9 {
+            text += &format!("{t:.3};{t:.3};{bounce}\n").replace('.', ",");
+            (t, lasts) = (t + lasts, e * lasts);
+        }
+        let report = fit(&text);
+        assert!(report.cor().is_some_and(|cor| (cor.value - e).abs() < 0.01), "{n} {e} {report}");
+    }
+}

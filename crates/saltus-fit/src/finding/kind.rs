@@ -332,6 +332,11 @@ pub enum FindingKind {
     AnotherBody {
         samples: usize,
     },
+    /// The ball bounces then too, and not in the motion that is fitted.
+    OtherMotion {
+        from_s: f64,
+        to_s: f64,
+    },
     ManyWild {
         wild: usize,
         samples: usize,

@@ -2,6 +2,7 @@
 //! numbers.
 
 mod bare;
+mod bodies;
 
 use std::collections::HashSet;
 
@@ -47,6 +48,9 @@ pub(super) fn tables<'a>(
     }
     if first(0).to_lowercase().starts_with("vernier format") {
         return vernier(view);
+    }
+    if let Some(found) = bodies::tables(view) {
+        return Ok(found);
     }
     if first(0).eq_ignore_ascii_case("frame") && position(view, 0, "y1").is_some() {
         return imagej(view, options);
@@ -253,10 +257,19 @@ fn by_hand(view: View<'_>) -> Option<Recognised<'_>> {
 }
 
 /// What `ImageJ` measures of lines that were drawn, each as long as the ball was high: `Length`
-/// beside the brightness along them, `Mean`, `Min`, `Max`. `None` where it is none of it.
+/// beside the brightness along them, `Mean`, `Min`, `Max`; or of particles, `XM` and `YM` beside
+/// `X` and `Y`, a slice each. `None` where it is none of it.
 fn results(view: View<'_>) -> Option<Recognised<'_>> {
-    let grey = ["mean", "min", "max"].iter().all(|name| position(view, 0, name).is_some());
-    let column = position(view, 0, "length").filter(|_| grey)?;
+    let at = |name: &str| position(view, 0, name);
+    if let (Some(y), Some(slice), Some(_), Some(_)) = (at("y"), at("slice"), at("xm"), at("ym")) {
+        let rows = (1..view.rows()).filter(|&row| view.is_number(row, y)).collect();
+        let header = picked(view.width(0), &[(slice, "frame"), (y, "y")]);
+        let units = (None, Some(Unit::PIXEL));
+        let region = Region { units, chosen: true, ..Region::new(view, header, 0, rows) };
+        return Some(Recognised { program: Some(Program::ImageJ), regions: vec![region], tracks: true });
+    }
+    let grey = ["mean", "min", "max"].iter().all(|name| at(name).is_some());
+    let column = at("length").filter(|_| grey)?;
     let rows = (1..view.rows()).filter(|&row| view.is_number(row, column)).collect();
     let header = picked(view.width(0), &[(column, "height")]);
     let units = (None, Some(Unit::PIXEL));

@@ -88,12 +88,14 @@ impl Columns {
     }
 
     /// The coarser of two columns that say the same in every row to their last digits, as in
-    /// centimetres and in inches.
+    /// centimetres and in inches; the other one where they are written alike.
     pub(super) fn alike(&self, region: &Region<'_>, one: usize, other: usize) -> Option<usize> {
         let si = |row: usize, column: usize| self.written(region, row, column);
         let pairs: Vec<_> = region.rows.iter().filter_map(|&row| Some((si(row, one)?, si(row, other)?))).collect();
         let rounded = |((a, half), (b, other)): &((f64, f64), (f64, f64))| (a - b).abs() <= 1.001 * (half + other);
-        let alike = pairs.len() > 1 && self.columns[one].unit != self.columns[other].unit && pairs.iter().all(rounded);
+        let twice = || region.rows.iter().all(|&row| region.cell(row, one) == region.cell(row, other));
+        let units = self.columns[one].unit != self.columns[other].unit;
+        let alike = pairs.len() > 1 && (units && pairs.iter().all(rounded) || twice());
         let coarser = pairs.iter().map(|(a, b)| a.1 - b.1).sum::<f64>() > 0.0;
         alike.then_some(if coarser { one } else { other })
     }

@@ -275,6 +275,10 @@ fn recordings(kind: &FindingKind) -> Option<String> {
         FindingKind::AnotherBody { samples } => format!(
             "{samples} samples that are no part of the motion are of flights themselves: two bodies were tracked in turn; track one of them alone"
         ),
+        FindingKind::OtherMotion { from_s, to_s } => format!(
+            "from t = {from_s:.2} to {to_s:.2} s the ball bounces too, but not in the motion that is fitted: it was hit, or two films are joined; \
+             give one motion alone"
+        ),
         FindingKind::ManyWild { wild, samples } => {
             format!("{wild} of {samples} samples are outliers: look at the tracking")
         }

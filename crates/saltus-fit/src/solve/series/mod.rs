@@ -56,9 +56,12 @@ pub(crate) fn fit(table: &Table, repair: bool, drag: Option<f64>) -> Result<Opti
         let place = at(table, n);
         let found = match track::Recording::of(n, &samples, (repair, drag)) {
             Ok(found) => {
-                let (drops, aside) = drops(n, found, samples, (repair, drag));
+                let (drops, aside, elsewhere) = drops(n, found, samples, (repair, drag));
                 let doubt = |time_s| Finding::doubt(FindingKind::DroppedAgain { time_s }).at(place.clone());
                 series.repairs.extend(aside.map(doubt));
+                let doubt =
+                    |(from_s, to_s)| Finding::doubt(FindingKind::OtherMotion { from_s, to_s }).at(place.clone());
+                series.repairs.extend(elsewhere.map(doubt));
                 let doubt = |samples| Finding::doubt(FindingKind::AnotherBody { samples }).at(place.clone());
                 series.repairs.extend(drops.iter().filter_map(track::Recording::another_body).map(doubt));
                 drops
@@ -105,21 +108,22 @@ pub(crate) fn fit(table: &Table, repair: bool, drag: Option<f64>) -> Result<Opti
     Ok(Some(series))
 }
 
-/// The drops of a trial, the first of which was found, and when one meets the floor that is left
-/// aside.
+/// The drops of a trial, the first of which was found; when one meets the floor that is left aside;
+/// and from when to when the ball bounces otherwise than in them.
 fn drops(
     trial: usize,
     first: track::Recording,
     samples: samples::Samples,
     how: (bool, Option<f64>),
-) -> (Vec<track::Recording>, Option<f64>) {
+) -> (Vec<track::Recording>, Option<f64>, Option<(f64, f64)>) {
     let (mut found, mut left) = (vec![first], samples);
     while let Some((time, later)) = found[found.len() - 1].dropped_again(&left, how) {
         match track::Recording::of(trial, &later, how) {
             Ok(next) => found.push(next),
-            Err(_) => return (found, Some(time)),
+            Err(_) => return (found, Some(time), None),
         }
         left = later;
     }
-    (found, None)
+    let elsewhere = found[found.len() - 1].elsewhere(&left, how.0);
+    (found, None, elsewhere)
 }

@@ -19,6 +19,19 @@ pub(crate) struct Samples {
 }
 
 impl Samples {
+    /// How far apart the heights are.
+    pub(super) fn range(&self) -> f64 {
+        let ends = |(low, high): (f64, f64), h: &f64| (low.min(*h), high.max(*h));
+        let (low, high) = self.heights.iter().fold((f64::INFINITY, f64::NEG_INFINITY), ends);
+        high - low
+    }
+
+    /// The samples before a time.
+    pub(super) fn before(&self, time: f64) -> Self {
+        let to = self.times.partition_point(|t| *t < time);
+        Self { times: self.times[..to].to_vec(), heights: self.heights[..to].to_vec(), turned: self.turned }
+    }
+
     /// The samples after a time.
     pub(super) fn after(&self, time: f64) -> Self {
         let from = self.times.partition_point(|t| *t <= time);

@@ -1,12 +1,12 @@
 //! One recording: scaled, cut, fitted by every model, and given in its own units again.
 
+mod after;
 mod air;
 mod described;
 pub(super) mod weigh;
 
 use super::flights::{self, Flights, NoFlights};
 use super::parabolas::{Sketch, sketch};
-use super::recording::in_metres;
 use super::samples::Samples;
 use super::wild::{Wild, another, wild};
 use crate::elementary::{asinh, atan, hypot};
@@ -98,27 +98,6 @@ impl Recording {
             (lasting, gain)
         });
         Ok(Self { instant, lasting })
-    }
-
-    /// When the ball is dropped again after the last flight, and the samples from there on: a hand
-    /// alone brings it higher than that flight did, and then it falls by the same gravity, and
-    /// bounces.
-    pub(crate) fn dropped_again(
-        &self,
-        series: &Samples,
-        (repair, drag): (bool, Option<f64>),
-    ) -> Option<(f64, Samples)> {
-        let (end, apex) = self.instant.end();
-        let later = series.after(end);
-        if !later.heights.iter().any(|h| *h > apex) {
-            return None;
-        }
-        let mut other = Candidates::cut(self.instant.trial, &later, repair).ok()?;
-        if !in_metres(other.gravity(), self.instant.gravity()) {
-            return None;
-        }
-        other.hold(drag);
-        Some((other.fitted(repair).ok()?.scale.origin.0, later))
     }
 
     /// How many wild samples are in one flight of another body.
@@ -245,16 +224,6 @@ impl Candidates {
 
     fn impacts(&self) -> usize {
         self.sketch.contacts.len()
-    }
-
-    /// The time of the last sample that is fitted, and the highest of its flight, in the table's
-    /// units.
-    fn end(&self) -> (f64, f64) {
-        let contact = self.sketch.contacts.last().copied().unwrap_or(0.0);
-        let flight = self.samples.iter().filter(|s| s.time >= contact);
-        let top = flight.map(|s| s.height).fold(0.0, f64::max);
-        let last = self.samples.last().map_or(0.0, |s| s.time);
-        (self.scale.origin.0 + self.scale.unit * last, self.scale.origin.1 + self.scale.range * top)
     }
 
     /// Gravity as the flights of the sketch have it, in the table's units.
