@@ -107,7 +107,9 @@ pub(crate) fn first_step<S: State>(
 ) -> f64 {
     let size = tolerance.norm(x, x, x);
     let speed = tolerance.norm(slope, x, x);
-    let guess = if size < 1e-5 || speed < 1e-5 { 1e-6 } else { 0.01 * size / speed }.min(longest);
+    // A speed that is beyond numbers, in what the tolerance allows, tells no step either.
+    let measured = size >= 1e-5 && (1e-5..f64::INFINITY).contains(&speed);
+    let guess = if measured { 0.01 * size / speed } else { 1e-6 }.min(longest);
     let ahead = x.with(|i| x.get(i) + guess * slope.get(i));
     let bent = flow(t + guess, &ahead);
     let bend = tolerance.norm(&x.with(|i| bent.get(i) - slope.get(i)), x, x) / guess;

@@ -440,7 +440,9 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
             return Err(Error::new(kind, Place::new(limit, mode, None::<A::Edge>, &x)).noting(Some(note)));
         }
         at.instant = at.span.now;
-        at.limits = Limits { count: at.limits.count + 1, last: Some(limit) };
+        let Limits { count, uncertified, .. } = at.limits;
+        let uncertified = uncertified + usize::from(!certified);
+        at.limits = Limits { count: count + 1, uncertified, last: Some(limit) };
         let jump = Jump { time: at.instant, j: at.jumps + 1, cause: Cause::Zeno, from: mode, before: x, to, after };
         (at.mode, at.state, at.jumps) = (to, jump.after.clone(), jump.j);
         (at.contraction, at.recent, at.cascade) = (Contraction::new(), Recent::new(), Cascade::NONE);

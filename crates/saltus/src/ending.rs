@@ -266,6 +266,9 @@ impl Stats {
 pub struct Limits {
     /// How many.
     pub count: usize,
+    /// How many of these lack the contraction that certifies that jumps accumulate there: without
+    /// [`Automaton::beyond`](crate::Automaton::beyond) the run ends in [`Stop::Resolution`].
+    pub uncertified: usize,
     /// When the last one was reached, in seconds.
     pub last: Option<f64>,
 }

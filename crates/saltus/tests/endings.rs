@@ -328,14 +328,23 @@ fn what_rounding_hides_is_no_limit() {
                 [height, speed - restitution * (x[1] - speed)]
             },
         );
-        let run = Simulation::of(&ball).run("flight", [0.1, 0.0], start..start + 3.0).unwrap();
-        match run.end.stop {
+        let run = |ball: &Hybrid<'_, [f64; 2]>| {
+            Simulation::of(ball).run("flight", [0.1, 0.0], start..start + 3.0).unwrap().end
+        };
+        let stop = run(&ball).stop;
+        // A run that goes on says how many of the limits that it passed were none, for all it shows.
+        let passed = run(&ball.mode("rest", |_t, _x| [0.0; 2]).beyond("flight", "rest", |_t, x| *x)).limits;
+        match stop {
             Stop::Resolution { limit } => {
                 hidden += 1;
                 assert!(limit > start && limit < start + 3.0 && restitution < 0.3, "{restitution}: {limit}");
+                assert_eq!((passed.count, passed.uncertified, passed.last), (1, 1, Some(limit)));
             }
-            Stop::Zeno { .. } => certified += 1,
-            stop => assert_eq!(stop, Stop::Time),
+            Stop::Zeno { limit } => {
+                certified += 1;
+                assert_eq!((passed.count, passed.uncertified, passed.last), (1, 0, Some(limit)));
+            }
+            stop => assert_eq!((stop, passed.count), (Stop::Time, 0)),
         }
     }
     assert!(hidden > 10 && certified > 10, "{hidden} {certified}");

@@ -32,6 +32,19 @@ fn times<M: Copy + PartialEq + fmt::Debug, E: Copy + PartialEq + fmt::Debug, S: 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(cases(64)))]
 
+    /// A speed that is beyond numbers in what the tolerance allows: of a coordinate at zero whose
+    /// tolerance is no more than that, or beside a large state.
+    #[test]
+    fn a_coordinate_at_zero_beside_any_tolerance(decades in -300.0..-9.0_f64, size in 0.0..300.0_f64, small: bool) {
+        let swing = Hybrid::new().mode("swing", |_, x: &[f64; 2]| [x[1], -x[0]]).terminal("swing", |_, x| x[0]);
+        let (absolute, size) = if small { (10_f64.powf(decades), 1.0) } else { (1e-9, 10_f64.powf(size)) };
+        for stepper in methods() {
+            let simulation = Simulation::of(&swing).stepper(stepper).absolute_tolerance(absolute);
+            let found = times(simulation.run("swing", [size, 0.0], 0.0..3.0)).unwrap();
+            prop_assert!(found.len() == 1 && (found[0] - 0.5 * PI).abs() < 1e-8, "{:?} {:?}", stepper, found);
+        }
+    }
+
     /// Powers of one second are tiny where a motion takes a day, beside a guard's constant.
     #[test]
     fn a_series_in_any_time(decades in -9.0..9.0_f64, level in -0.95..0.95_f64, digits in 6.0..12.5_f64) {

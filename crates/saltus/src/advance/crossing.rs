@@ -256,7 +256,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             short && resolved && before == 0.0 && !(by_formula && again) && self.hides(edge, now, root, &at, &state);
         self.memory.hidden = if hidden { self.memory.hidden + 1 } else { 0 };
         let doubtful = self.memory.last == Some(edge) && (hidden || short && !resolved && !by_formula);
-        let crowded = before + root <= FEW * resolution(t) && self.time_rounding(edge, t, &state, g) > 0.0;
+        let crowded = !resolved && self.time_rounding(edge, t, &state, g) > 0.0;
         self.memory.crowded = if crowded { self.memory.crowded + 1 } else { 0 };
         self.memory.spurious = doubtful && self.rises(edge, now, root, &at) || self.memory.crowded >= CROWDED;
         Close { span, time, state }

@@ -45,8 +45,8 @@ const FEW_EDGES: usize = 4;
 /// chance.
 const IN_A_ROW: u32 = 3;
 
-/// So many arcs in a row no longer than a few spacings of time make no headway: a guard that moves
-/// with time has but those few values on each.
+/// So many arcs in a row so short that time does not resolve them make no headway: a guard that
+/// moves with time has but a few values on each.
 /// Held by `late::a_plastic_ball_on_a_table_rests`.
 pub(super) const CROWDED: u32 = 64;
 

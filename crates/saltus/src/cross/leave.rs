@@ -1,11 +1,11 @@
 //! How a guard leaves a root at the start: by a fall, by a rise that rounding hides, or by a touch.
 
-use crate::certainty::{FEW, ROUGHLY, ROUNDINGS, SURELY};
+use crate::certainty::{FEW, ROUGHLY, ROUNDINGS, SMALL, SURELY};
 
-use super::Undefined;
 use super::departure::Departure;
-use super::probe::{Part, Search, Side};
+use super::probe::{AT_START, Part, Search, Side};
 use super::proxy::Proxy;
+use super::{Undefined, neighbours};
 
 impl Search<'_> {
     /// Whether the guard on `0..=b` is nothing but rounding, and rises on a longer
@@ -28,6 +28,22 @@ impl Search<'_> {
             && nowhere_below
             && p.end() < SURELY * FEW * margin
             && self.is_rough(0.0, ROUGHLY * b)?)
+    }
+
+    /// When a guard that is zero at an open start, and then for a while, is no longer; none where
+    /// rounding makes these zeros, whose first step then stands for a good part of their time.
+    pub(super) fn plateau(&mut self) -> Result<Option<f64>, Undefined> {
+        let mut beyond = self.span * AT_START;
+        if self.spent || self.value(beyond)? != 0.0 {
+            return Ok(None);
+        }
+        while beyond < self.span && self.value(beyond)? == 0.0 {
+            beyond = self.span.min(2.0 * beyond);
+        }
+        let sign = |s: f64| if (self.guard)(s) == 0.0 { 0.0 } else { -1.0 };
+        let (last, first) = neighbours(sign, 0.0, beyond);
+        let stands = self.value(first)? == self.value(first + SMALL * last)?;
+        Ok(Some(last).filter(|_| !stands))
     }
 
     /// The guard has left the root at the start to below zero within `0..=b`, as tᵐ with m =

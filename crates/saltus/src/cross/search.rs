@@ -61,7 +61,13 @@ impl Search<'_> {
         let fall = loop {
             let (a, b, guess) = match part {
                 Part::None(_) => break None,
-                Part::AtStart => break Some(Crossing::at_start(self.span * AT_START)),
+                Part::AtStart => {
+                    let Some(end) = self.plateau()? else { break Some(Crossing::at_start(self.span * AT_START)) };
+                    self.flat = None;
+                    let behind = Stretch { a: end, margin: f64::INFINITY, known: None, ..all };
+                    part = self.part(&behind, Side::Inside)?;
+                    continue;
+                }
                 Part::Hidden(near) => break Some(Crossing::after(self.inside_near(near)?)),
                 Part::Fall { near: Some(near), .. } => break settle(&mut self.guard, near),
                 Part::Fall { a, b, near: None } => (a, b, None),
@@ -222,8 +228,11 @@ impl Search<'_> {
                     self.falls_smoothly = true;
                     return Ok(Next::Looks);
                 }
-                // Falling strictly from a zero, the rest of which is rounding.
-                Side::Inside if start == 0.0 => Part::Fall { a, b, near: Some(a) },
+                // Falling strictly from a zero, the rest of which is rounding, unless that goes on.
+                Side::Inside if start == 0.0 => {
+                    let falls = known.is_some() || self.value(a + AT_START * (b - a))? < 0.0;
+                    Part::Fall { a, b, near: Some(a).filter(|_| falls) }
+                }
                 _ if end < 0.0 => match (q.root().map(|u| a + (b - a) * u), known) {
                     (Some(guess), None) if from == a => Part::Falls { a, b, guess },
                     (near, Some(_)) => Part::Fall { a: from, b, near },
