@@ -289,9 +289,9 @@ fn a_film_of_two_balls_in_turn_is_doubted() {
     }
 }
 
-/// What is no motion of one ball by itself is not trusted for its first flights: a film that goes on
-/// at another scale, or a ball that a hand drives down again from every top. A ball that is caught
-/// and carried away is.
+/// What is no motion of one ball by itself is not trusted for its first flights: a film that goes
+/// on at another scale, or a ball that a hand drives down again from every top. A ball that is
+/// caught and carried away is.
 #[test]
 fn a_ball_that_is_driven_on_is_doubted() {
     const RATE: f64 = 60.0;

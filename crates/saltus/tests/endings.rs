@@ -332,7 +332,8 @@ fn what_rounding_hides_is_no_limit() {
             Simulation::of(ball).run("flight", [0.1, 0.0], start..start + 3.0).unwrap().end
         };
         let stop = run(&ball).stop;
-        // A run that goes on says how many of the limits that it passed were none, for all it shows.
+        // A run that goes on says how many of the limits that it passed were none, for all it
+        // shows.
         let passed = run(&ball.mode("rest", |_t, _x| [0.0; 2]).beyond("flight", "rest", |_t, x| *x)).limits;
         match stop {
             Stop::Resolution { limit } => {
