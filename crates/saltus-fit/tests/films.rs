@@ -4,7 +4,7 @@
 use crate::film::{Ball, Contact, csv, noisy, report};
 use crate::noise::Noise;
 use saltus_cases::cases;
-use saltus_fit::{FindingKind, Fit, ReadOptions, Report, Table, Verdict};
+use saltus_fit::{FindingKind, Fit, ReadOptions, Report, Table, Verdict, Widening};
 
 const CORS: [fn(f64) -> f64; 4] = [|_| 0.52, |_| 0.62, |_| 0.72, |_| 0.82];
 const SCATTER: [f64; 4] = [5e-4, 1e-3, 2e-3, 3e-3];
@@ -151,6 +151,8 @@ fn a_single_impact_is_that_of_any_ball() {
             let text = csv(&noisy(&heights, &mut noise, 3e-3));
             let unknown = report(&text);
             assert_eq!(unknown.series()[0].impacts.len(), 1, "{unknown}");
+            let airs = unknown.widened().iter().filter(|why| matches!(why, Widening::Air { .. })).count();
+            assert!(airs <= 1, "{unknown}");
             let interval = unknown.cor().expect("a COR");
             held += usize::from((interval.low..=interval.high).contains(&cors[0]));
             all += 1;

@@ -175,6 +175,8 @@ fn any_ball(judgement: &mut Judgement, tracks: &[Track], pooled: &Pooled) {
     };
     let high = pooled.cor.value + share + pooled.quantile * pooled.cor.standard_error;
     if let Some(cor) = judgement.cor.filter(|cor| high > cor.high) {
+        // In place of what each film by itself allows.
+        judgement.widened.retain(|why| !matches!(why, Widening::Air { ball: None, .. }));
         judgement.reach(cor.low, high, Widening::Air { most_per_m, share, ball: None });
     }
 }
