@@ -36,31 +36,32 @@ impl Recording {
         Some((other.fitted(repair).ok()?.scale.origin.0, later))
     }
 
-    /// From when to when the ball bounces otherwise than in the motion that is fitted: before it in
-    /// flights by another gravity; after it in flights that are no more those of this motion, or
-    /// time and again from the floor by more than a bounce leaves. It was driven, or films are
-    /// joined.
+    /// From when to when the ball bounces otherwise than in the motion that is fitted: before it or
+    /// after it in flights by another gravity, or after it time and again from the floor by more
+    /// than a bounce leaves. It was driven, or films are joined.
     pub(crate) fn elsewhere(&self, series: &Samples, repair: bool) -> Option<(f64, f64)> {
         let (begin, (end, apex)) = (self.instant.begin(), self.instant.end());
         let (floor, cor) = (self.instant.scale.origin.1, self.instant.last_cor());
         let due = HIGHER * cor * cor * (apex - floor);
         let bounces = |samples: &Samples| {
-            let cut = Candidates::cut(self.instant.trial, samples, repair).ok()?;
-            (samples.range() > DOWN * due && cut.impacts() >= TOPS).then(|| cut.gravity())
+            let other = |cut: Candidates| cut.impacts() >= TOPS && !in_metres(cut.gravity(), self.instant.gravity());
+            samples.range() > DOWN * due && Candidates::cut(self.instant.trial, samples, repair).is_ok_and(other)
         };
         let (earlier, later) = (series.before(begin), series.after(end));
-        if bounces(&earlier).is_some_and(|gravity| !in_metres(gravity, self.instant.gravity())) {
+        if bounces(&earlier) {
             return Some((earlier.times[0], begin));
         }
         let (mut tops, mut down) = (0, true);
-        for height in later.heights.iter().map(|height| height - floor) {
-            if down && height > due {
+        // One sample by itself may be wild.
+        for pair in later.heights.windows(2) {
+            let low = pair[0].min(pair[1]) - floor;
+            if down && low > due {
                 (tops, down) = (tops + 1, false);
             }
-            down |= height < DOWN * due;
+            down |= low < DOWN * due;
         }
         let last = later.times.last().copied()?;
-        (tops >= TOPS || bounces(&later).is_some()).then_some((end, last))
+        (tops >= TOPS || bounces(&later)).then_some((end, last))
     }
 }
 
