@@ -3,13 +3,15 @@
 
 use super::{Recognised, picked, position};
 use crate::finding::Program;
+use crate::read::aside::{LeftAside, Part, Why};
 use crate::read::grid::View;
 use crate::read::region::Region;
 use crate::read::units::Unit;
 
 /// The bodies of such a file; `None` where it is none.
 pub(super) fn tables(view: View<'_>) -> Option<Recognised<'_>> {
-    spots(view).or_else(|| boxes(view)).or_else(|| markers(view))
+    let found = spots(view).or_else(|| boxes(view)).or_else(|| markers(view));
+    found.filter(|found| !found.regions.is_empty())
 }
 
 /// `TRACK_ID`, `POSITION_Y` and `FRAME` of spots in any order, below names in plain words and in
@@ -40,13 +42,22 @@ fn of_bodies(view: View<'_>, body: usize, [frame, y]: [usize; 2], program: Optio
             None => bodies.push((name, vec![row])),
         }
     }
-    let several = bodies.len() > 1;
+    // What stays in its place to the last digit shows no ball.
+    let stays = |(_, rows): &(&str, Vec<usize>)| rows.iter().all(|&row| view.cell(row, y) == view.cell(rows[0], y));
+    let (still, bodies): (Vec<_>, Vec<_>) = bodies.into_iter().partition(stays);
+    let several = still.len() + bodies.len() > 1;
+    let aside =
+        still.iter().map(|(name, _)| LeftAside::new(Part::Track, format!("track {name}"), Why::Still)).collect();
     let region = |(name, rows): (&str, Vec<usize>)| {
         let header = picked(view.width(0), &[(frame, "frame"), (y, "y")]);
         let label = if several { format!("track {name}") } else { String::new() };
         Region { label, units: (None, Some(Unit::PIXEL)), chosen: true, ..Region::new(view, header, 0, rows) }
     };
-    Recognised { program, regions: bodies.into_iter().map(region).collect(), tracks: true }
+    let mut regions: Vec<Region<'_>> = bodies.into_iter().map(region).collect();
+    if let Some(first) = regions.first_mut() {
+        first.aside = aside;
+    }
+    Recognised { program, regions, tracks: true }
 }
 
 /// `PathFileType`, lines of rates and units, `Frame#`, `Time` and the names of markers, and below
