@@ -248,6 +248,9 @@ fn gathered(name: &str, node: &Node, above: &str, found: &mut Vec<Part>) {
             (name, cell) if letter(&named) => format!("{name} {cell}"),
             (_, cell) => cell.to_owned(),
         });
+        // Or a condition is, `"ball_temp_C": 23`, where no words are.
+        let condition = |(name, _): &(&String, &str)| matches!(Heading::parse(name).meaning, Meaning::Setting);
+        let called = called.or_else(|| cells().find(condition).map(|(name, cell)| format!("{name} {cell}")));
         let from = found.len();
         tables(called.as_deref().unwrap_or(&format!("trial {}", n + 1)), member, above, found);
         called.iter().for_each(|name| enclosed(&mut found[from..], name, true));

@@ -130,10 +130,12 @@ pub(super) enum Phrase {
     Whither,
     /// Behind a number, how often something was done.
     Times,
+    /// What a rate of frames or samples is written in.
+    Rated,
 }
 
 impl Phrase {
-    const ALL: [(&'static str, Self); 61] = [
+    const ALL: [(&'static str, Self); 62] = [
         ("missing", Self::Missing),
         ("about", Self::About),
         ("half", Self::Half),
@@ -195,6 +197,7 @@ impl Phrase {
         ("whence", Self::Whence),
         ("whither", Self::Whither),
         ("times", Self::Times),
+        ("rated", Self::Rated),
     ];
 
     /// The phrases of this kind, in the order of the file.

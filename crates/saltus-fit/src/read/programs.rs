@@ -1,8 +1,9 @@
-//! What programs write: Tracker, `ImageJ`, Vernier, Audacity's labels, runs side by side, bare
-//! numbers.
+//! What programs write: Tracker, `ImageJ`, Vernier, Régressi, Audacity's labels, runs side by side,
+//! bare numbers.
 
 mod bare;
 mod bodies;
+mod regressi;
 
 use std::collections::HashSet;
 
@@ -48,6 +49,9 @@ pub(super) fn tables<'a>(
     }
     if first(0).to_lowercase().starts_with("vernier format") {
         return vernier(view);
+    }
+    if let Some(pages) = regressi::tables(view) {
+        return Ok(pages.into());
     }
     if let Some(found) = bodies::tables(view) {
         return Ok(found);

@@ -161,7 +161,9 @@ fn names_in_comment(text: &str) -> Option<usize> {
 fn aligned(text: &str) -> Option<String> {
     let lines = || text.lines().filter(|line| !line.trim().is_empty() && !line.starts_with('#') && !drawn(line));
     let numbers = |line: &str| line.split_whitespace().all(|cell| cell.parse::<f64>().is_ok());
-    let rows = || lines().filter(|line| numbers(line));
+    // A number by itself above rows of several is none of them.
+    let alone = |line: &&str| line.split_whitespace().count() == 1;
+    let rows = || lines().filter(|line| numbers(line)).skip_while(alone);
     let width = rows().next().map_or(0, |line| line.split_whitespace().count());
     let spaced = |line: &str| line.starts_with(' ') || line.trim().contains("  ") || bracketed(line, width).is_some();
     let of_numbers = width > 1

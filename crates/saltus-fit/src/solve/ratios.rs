@@ -7,7 +7,7 @@
 //! independent but for the reading errors that they share: yₖ = ln(Δₖ₊₁/Δₖ) = L + ηₖ + B δt, with
 //! covariance s² I + σ² B Bᵀ.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use super::choice::ModelChoice;
 use super::estimate::Estimate;
@@ -31,6 +31,14 @@ struct Ratios {
     /// The flight before each middle contact, s.
     before: DVector<f64>,
     reading: DMatrix<f64>,
+}
+
+/// A trial's log-ratios with the factor of their covariance s² I + σ² B Bᵀ, which every fit to them
+/// divides by.
+struct Weighted<'a> {
+    ratios: &'a Ratios,
+    factor: Cholesky<f64, Dyn>,
+    log_det: f64,
 }
 
 /// Generalised least squares at given variances.
@@ -92,31 +100,34 @@ fn collect(trial: &TrialEvidence) -> Option<Ratios> {
     Some(Ratios { trial: trial.trial, y, before, reading: &b * b.transpose() })
 }
 
-#[allow(clippy::cast_precision_loss)]
-fn solve(trials: &[Ratios], scatter: f64, reading: f64) -> Option<Solved> {
-    let mut factors = Vec::with_capacity(trials.len());
-    let (mut log_det, mut count) = (0.0, 0.0);
-    let mut parts = Vec::with_capacity(trials.len());
-    for trial in trials {
-        let n = trial.y.len();
-        let covariance = DMatrix::from_diagonal_element(n, n, scatter * scatter) + reading * reading * &trial.reading;
+/// The `trials` by bounces that scatter by `scatter` and times that are read to `reading` seconds.
+fn weigh(trials: &[Ratios], scatter: f64, reading: f64) -> Option<Vec<Weighted<'_>>> {
+    let weighted = trials.iter().map(|ratios| {
+        let n = ratios.y.len();
+        let covariance = DMatrix::from_diagonal_element(n, n, scatter * scatter) + reading * reading * &ratios.reading;
         let factor = covariance.cholesky()?;
-        let ones = factor.solve(&DVector::from_element(n, 1.0));
-        parts.push((ones.sum(), ones.dot(&trial.y)));
-        log_det += 2.0 * factor.l_dirty().diagonal().iter().map(|d| ln(*d)).sum::<f64>();
-        count += n as f64;
-        factors.push(factor);
-    }
+        let log_det = 2.0 * factor.l_dirty().diagonal().iter().map(|d| ln(*d)).sum::<f64>();
+        Some(Weighted { ratios, factor, log_det })
+    });
+    weighted.collect()
+}
+
+#[allow(clippy::cast_precision_loss)]
+fn solve(trials: &[Weighted<'_>]) -> Option<Solved> {
+    let parts = trials.iter().map(|Weighted { ratios, factor, .. }| {
+        let ones = factor.solve(&DVector::from_element(ratios.y.len(), 1.0));
+        (ones.sum(), ones.dot(&ratios.y))
+    });
+    let parts: Vec<(f64, f64)> = parts.collect();
     let (weight, sum) = parts.iter().fold((0.0, 0.0), |(a, b), (x, y)| (a + x, b + y));
     let mean = sum / weight;
-    let square: f64 = trials
-        .iter()
-        .zip(&factors)
-        .map(|(trial, factor)| {
-            let r = trial.y.add_scalar(-mean);
-            r.dot(&factor.solve(&r))
-        })
-        .sum();
+    let squares = trials.iter().map(|Weighted { ratios, factor, .. }| {
+        let r = ratios.y.add_scalar(-mean);
+        r.dot(&factor.solve(&r))
+    });
+    let square: f64 = squares.sum();
+    let log_det: f64 = trials.iter().map(|trial| trial.log_det).sum();
+    let count = trials.iter().map(|trial| trial.ratios.y.len()).sum::<usize>() as f64;
     let deviance = log_det + ln(weight) + (count - 1.0) * ln(square);
     let bic = log_det + count * ln(square) + ln(count);
     let good = mean.is_finite() && square.is_finite() && weight > 0.0;
@@ -141,7 +152,7 @@ pub(crate) fn scattering(evidence: &Evidence, sigma: Sourced) -> Option<FromRati
         let bouncing = timed_worse(&trials)?;
         ((bouncing.square / freedom as f64).sqrt(), 0.0)
     } else {
-        let excess = |s: f64| solve(&trials, s, sigma.value).map(|found| found.square - freedom as f64);
+        let excess = |s: f64| Some(solve(&weigh(&trials, s, sigma.value)?)?.square - freedom as f64);
         if excess(0.0)? <= 0.0 {
             return None;
         }
@@ -155,7 +166,8 @@ pub(crate) fn scattering(evidence: &Evidence, sigma: Sourced) -> Option<FromRati
     if scatter <= 0.0 {
         return None;
     }
-    let found = solve(&trials, scatter, reading)?;
+    let weighted = weigh(&trials, scatter, reading)?;
+    let found = solve(&weighted)?;
     let value = exp(found.mean);
     let mut error = found.variance.sqrt();
     let mut quantile = student(freedom);
@@ -175,8 +187,8 @@ pub(crate) fn scattering(evidence: &Evidence, sigma: Sourced) -> Option<FromRati
     let mut estimate = Estimate::new(Method::Times, value, value * error, quantile);
     estimate.trials = trials.len();
     estimate.degrees_of_freedom = Some(freedom);
-    let models = beside(&trials, &estimate, scatter, reading);
-    let (trend, followed) = trend(&trials, evidence, scatter, reading).unzip();
+    let models = beside(&weighted, &estimate);
+    let (trend, followed) = trend(&weighted, evidence).unzip();
     Some(FromRatios {
         estimate,
         scatter,
@@ -209,15 +221,16 @@ const SPANS: f64 = 2.0;
 /// follows air or the speed would be a scatter of the bounces beside one COR, however well times
 /// were read.
 fn timed_worse(trials: &[Ratios]) -> Option<Solved> {
-    let (timing, bouncing) = (solve(trials, 0.0, 1.0)?, solve(trials, 1.0, 0.0)?);
+    let either = [weigh(trials, 0.0, 1.0)?, weigh(trials, 1.0, 0.0)?];
     let follows = |(_, x, sign): Follows| {
-        let lines = [(0.0, 1.0), (1.0, 0.0)].map(|(s, r)| line(trials, |t, k| x(t.before[k]), s, r));
+        let lines = either.each_ref().map(|weighted| line(weighted, |t, k| x(t.before[k])));
         let likely = |line: Option<Line>| {
             line.filter(|line| line.slope * sign >= 0.0).map(|line| (line.bic + CLEAR, line.deviance))
         };
         let [Some(timing), Some(bouncing)] = lines.map(likely) else { return None };
         Some([timing, bouncing])
     };
+    let (timing, bouncing) = (solve(&either[0])?, solve(&either[1])?);
     let level = [&timing, &bouncing].map(|found| (found.bic, found.deviance));
     let all = FOLLOWS.into_iter().filter_map(follows).chain([level]);
     let best = all.min_by(|a, b| a[0].0.min(a[1].0).total_cmp(&b[0].0.min(b[1].0)))?;
@@ -226,8 +239,8 @@ fn timed_worse(trials: &[Ratios]) -> Option<Solved> {
 
 /// The models of [`FOLLOWS`] beside one COR, with bounces that scatter.
 #[allow(clippy::cast_precision_loss)]
-fn beside(trials: &[Ratios], one: &Estimate, scatter: f64, reading: f64) -> Vec<ModelChoice> {
-    let flights = || trials.iter().flat_map(|t| t.before.iter().copied());
+fn beside(trials: &[Weighted<'_>], one: &Estimate) -> Vec<ModelChoice> {
+    let flights = || trials.iter().flat_map(|t| t.ratios.before.iter().copied());
     let (shortest, longest) = (flights().fold(f64::INFINITY, f64::min), flights().fold(0.0, f64::max));
     let (Some(value), Some(standard_error), count) = (one.value, one.standard_error, flights().count() as f64) else {
         return Vec::new();
@@ -241,7 +254,7 @@ fn beside(trials: &[Ratios], one: &Estimate, scatter: f64, reading: f64) -> Vec<
     for (name, x, sign) in FOLLOWS {
         // Drag and the time of contact are counted from none of either, speed from its middle.
         let zero = if sign == 0.0 { x((shortest * longest).sqrt()) } else { 0.0 };
-        let Some(line) = line(trials, |t, k| x(t.before[k]) - zero, scatter, reading) else { continue };
+        let Some(line) = line(trials, |t, k| x(t.before[k]) - zero) else { continue };
         let Measured { value, standard_error } = line.level;
         let (e, left) = (exp(value), line.left / line.alone);
         if line.slope * sign < 0.0 || !(0.0..=1.0).contains(&e) || left <= 0.0 {
@@ -279,20 +292,18 @@ struct Line {
 
 /// The line over `x`, by generalised least squares; its errors are those of the scatter about it.
 #[allow(clippy::cast_precision_loss)]
-fn line(trials: &[Ratios], x: impl Fn(&Ratios, usize) -> f64, scatter: f64, reading: f64) -> Option<Line> {
+fn line(trials: &[Weighted<'_>], x: impl Fn(&Ratios, usize) -> f64) -> Option<Line> {
     let mut normal = DMatrix::<f64>::zeros(2, 2);
     let mut right = DVector::<f64>::zeros(2);
     let (mut total, mut log_det, mut count) = (0.0, 0.0, 0);
-    for trial in trials {
-        let n = trial.y.len();
-        let x = DMatrix::from_fn(n, 2, |i, j| if j == 0 { 1.0 } else { x(trial, i) });
-        let covariance = DMatrix::from_diagonal_element(n, n, scatter * scatter) + reading * reading * &trial.reading;
-        let factor = covariance.cholesky()?;
-        log_det += 2.0 * factor.l_dirty().diagonal().iter().map(|d| ln(*d)).sum::<f64>();
+    for Weighted { ratios, factor, log_det: det } in trials {
+        let n = ratios.y.len();
+        let x = DMatrix::from_fn(n, 2, |i, j| if j == 0 { 1.0 } else { x(ratios, i) });
         let weighted = factor.solve(&x);
         normal += x.transpose() * &weighted;
-        right += weighted.transpose() * &trial.y;
-        total += trial.y.dot(&factor.solve(&trial.y));
+        right += weighted.transpose() * &ratios.y;
+        total += ratios.y.dot(&factor.solve(&ratios.y));
+        log_det += det;
         count += n;
     }
     let factor = normal.clone().cholesky()?;
@@ -316,9 +327,9 @@ fn line(trials: &[Ratios], x: impl Fn(&Ratios, usize) -> f64, scatter: f64, read
 /// The probability that chance alone makes the ratios follow the number of the bounce as closely as
 /// they do, and how much of their squares that is.
 #[allow(clippy::cast_precision_loss)]
-fn trend(trials: &[Ratios], evidence: &Evidence, scatter: f64, reading: f64) -> Option<(Option<f64>, f64)> {
+fn trend(trials: &[Weighted<'_>], evidence: &Evidence) -> Option<(Option<f64>, f64)> {
     let first = |trial: &Ratios| evidence.trials.get(trial.trial).and_then(|t| t.moments.first()).map_or(0, |m| m.0);
-    let line = line(trials, |trial, i| (first(trial) + i) as f64, scatter, reading)?;
+    let line = line(trials, |trial, i| (first(trial) + i) as f64)?;
     let (gain, freedom) = ((line.alone - line.left).max(0.0), line.count - 2);
     Some((variance_ratio_p(gain / (line.left / freedom as f64), 1, freedom), gain / line.alone))
 }

@@ -30,20 +30,21 @@ impl Search<'_> {
             && self.is_rough(0.0, ROUGHLY * b)?)
     }
 
-    /// When a guard that is zero at an open start, and then for a while, is no longer; none where
-    /// rounding makes these zeros, whose first step then stands for a good part of their time.
-    pub(super) fn plateau(&mut self) -> Result<Option<f64>, Undefined> {
+    /// When a guard that is zero at an open start, and then for a while, is no longer, or is no
+    /// number; none where rounding makes these zeros, whose first step then stands for a good part
+    /// of their time.
+    pub(super) fn plateau(&mut self) -> Option<f64> {
         let mut beyond = self.span * AT_START;
-        if self.spent || self.value(beyond)? != 0.0 {
-            return Ok(None);
+        if self.spent || (self.guard)(beyond) != 0.0 {
+            return None;
         }
-        while beyond < self.span && self.value(beyond)? == 0.0 {
+        while beyond < self.span && (self.guard)(beyond) == 0.0 {
             beyond = self.span.min(2.0 * beyond);
         }
         let sign = |s: f64| if (self.guard)(s) == 0.0 { 0.0 } else { -1.0 };
         let (last, first) = neighbours(sign, 0.0, beyond);
-        let stands = self.value(first)? == self.value(first + SMALL * last)?;
-        Ok(Some(last).filter(|_| !stands))
+        let stands = (self.guard)(first) == (self.guard)(first + SMALL * last);
+        Some(last).filter(|_| !stands)
     }
 
     /// The guard has left the root at the start to below zero within `0..=b`, as tᵐ with m =

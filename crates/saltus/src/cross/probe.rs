@@ -38,9 +38,6 @@ pub(super) struct Search<'a> {
     /// What a guard on a step is rough by: close to its start, where the solution is zero but for
     /// rounding, it is exact to no more than this times the square of the part of the step.
     pub(super) rough: f64,
-    /// Whether the guard falls from zero at the start as smoothly as a polynomial, so that zeros
-    /// after it are rounding and no plateau.
-    pub(super) falls_smoothly: bool,
     /// How far a guard that is zero at an open start may have been off on the shortest stretch on
     /// which its samples rise from there.
     pub(super) rise: Option<f64>,
@@ -116,7 +113,6 @@ impl<'a> Search<'a> {
             // A dense output starts with the exact slope, but its higher powers carry the error of
             // the step and the rounding of its stages.
             rough: TINY * bend,
-            falls_smoothly: false,
             rise: None,
             evaluations: 0,
             largest: 0.0,

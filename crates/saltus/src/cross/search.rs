@@ -62,7 +62,7 @@ impl Search<'_> {
             let (a, b, guess) = match part {
                 Part::None(_) => break None,
                 Part::AtStart => {
-                    let Some(end) = self.plateau()? else { break Some(Crossing::at_start(self.span * AT_START)) };
+                    let Some(end) = self.plateau() else { break Some(Crossing::at_start(self.span * AT_START)) };
                     self.flat = None;
                     let behind = Stretch { a: end, margin: f64::INFINITY, known: None, ..all };
                     part = self.part(&behind, Side::Inside)?;
@@ -224,10 +224,7 @@ impl Search<'_> {
             Shape::Falling if resolved => match side {
                 Side::Outside => Part::None(Side::Outside),
                 Side::Wall if !leaving => self.left(order(), b),
-                Side::Wall if q.start() <= q_margin => {
-                    self.falls_smoothly = true;
-                    return Ok(Next::Looks);
-                }
+                Side::Wall if q.start() <= q_margin => return Ok(Next::Looks),
                 // Falling strictly from a zero, the rest of which is rounding, unless that goes on.
                 Side::Inside if start == 0.0 => {
                     let falls = known.is_some() || self.value(a + AT_START * (b - a))? < 0.0;
@@ -248,10 +245,7 @@ impl Search<'_> {
                 Side::Wall => Part::None(Side::of(q.end(), side)),
                 _ => Part::None(Side::beside(end, side, base)),
             },
-            Shape::Flat if scale == 0.0 => {
-                let plateau = side == Side::Wall && !self.spent && !self.falls_smoothly;
-                return Ok(Next::Zero(if plateau { Side::Inside } else { side }));
-            }
+            Shape::Flat if scale == 0.0 => return Ok(Next::Zero(side)),
             _ => return Ok(Next::Looks),
         }))
     }

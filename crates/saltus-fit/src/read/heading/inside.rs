@@ -28,75 +28,6 @@ impl DropHeight {
     }
 }
 
-/// What rates of frames and of samples are written in, and what one of them is in 1/s.
-const RATES: [(&str, f64); 65] = [
-    ("fps", 1.0),
-    ("frames per second", 1.0),
-    ("frames/second", 1.0),
-    ("frames/s", 1.0),
-    ("frames a second", 1.0),
-    ("khz", 1000.0),
-    ("hz", 1.0),
-    ("samples per second", 1.0),
-    ("samples/second", 1.0),
-    ("samples/s", 1.0),
-    ("bilder/s", 1.0),
-    ("bilder pro sekunde", 1.0),
-    ("images/s", 1.0),
-    ("images par seconde", 1.0),
-    ("im/s", 1.0),
-    ("fotogrammi al secondo", 1.0),
-    ("fotogrammi/s", 1.0),
-    ("fotogramas por segundo", 1.0),
-    ("fotogramas/s", 1.0),
-    ("cuadros por segundo", 1.0),
-    ("quadros por segundo", 1.0),
-    ("beelden per seconde", 1.0),
-    ("frames in a second", 1.0),
-    ("bilder i sekundet", 1.0),
-    ("bilder per sekund", 1.0),
-    ("billeder i sekundet", 1.0),
-    ("billeder pr. sekund", 1.0),
-    ("billeder/s", 1.0),
-    ("bilder/sek", 1.0),
-    ("kuvaa sekunnissa", 1.0),
-    ("kuvaa/s", 1.0),
-    ("klatek na sekundę", 1.0),
-    ("klatki na sekundę", 1.0),
-    ("klatek/s", 1.0),
-    ("snímků za sekundu", 1.0),
-    ("snímků/s", 1.0),
-    ("snímok za sekundu", 1.0),
-    ("snímok/s", 1.0),
-    ("képkocka/s", 1.0),
-    ("képkocka másodpercenként", 1.0),
-    ("kare/s", 1.0),
-    ("kare/saniye", 1.0),
-    ("кадров в секунду", 1.0),
-    ("кадра в секунду", 1.0),
-    ("кадров/с", 1.0),
-    ("кадр/с", 1.0),
-    ("кадъра в секунда", 1.0),
-    ("кадрів на секунду", 1.0),
-    ("кадрів/с", 1.0),
-    ("cadre pe secundă", 1.0),
-    ("cadre/s", 1.0),
-    ("καρέ ανά δευτερόλεπτο", 1.0),
-    ("fotogrames per segon", 1.0),
-    ("beelden/s", 1.0),
-    ("beelden per sec", 1.0),
-    ("コマ/秒", 1.0),
-    ("フレーム/秒", 1.0),
-    ("帧/秒", 1.0),
-    ("幀/秒", 1.0),
-    ("프레임/초", 1.0),
-    ("kadrų per sekundę", 1.0),
-    ("kadri sekundē", 1.0),
-    ("kaadrit sekundis", 1.0),
-    ("sličica u sekundi", 1.0),
-    ("sličic na sekundo", 1.0),
-];
-
 /// A text of which no colon parts the end of a number in an order from it, as in Swedish: `1:a
 /// studsen`.
 pub(super) fn swedish(text: &str) -> Cow<'_, str> {
@@ -123,15 +54,16 @@ pub(super) fn ranges(words: &mut Vec<Word>) {
 /// in 1/s, and the text without it.
 pub(in crate::read) fn rate(text: &str) -> Option<(f64, String)> {
     let lower = text.to_ascii_lowercase();
-    RATES.iter().find_map(|&(unit, factor)| {
+    Phrase::Rated.all().iter().find_map(|unit| {
         let (at, _) = lower.match_indices(unit).next()?;
         let after = &text[at + unit.len()..];
         if after.starts_with(char::is_alphanumeric) {
             return None;
         }
-        let digits = |c: char| c.is_ascii_digit() || matches!(c, '.' | ',');
         let head = text[..at].trim_end();
-        let before = head.trim_end_matches(digits);
+        let thousands = lower[..at].ends_with('k') && *unit == "hz";
+        let (head, factor) = if thousands { (head[..at - 1].trim_end(), 1000.0) } else { (head, 1.0) };
+        let before = head.trim_end_matches(|c: char| c.is_ascii_digit() || matches!(c, '.' | ','));
         let value = counted(&head[before.len()..])? * factor;
         // In brackets what the rate is called: `(fs = 44100 Hz)`, `(filmed at 120 fps)`.
         let open = before.rfind(['(', '[']).filter(|open| !before[*open..].contains([')', ']']));

@@ -41,8 +41,12 @@ pub(super) fn samples(view: View<'_>) -> Option<Recognised<'_>> {
 /// Numbers without names: a list, if the options say of what; a track of pixels, if they say how
 /// many frames a second.
 pub(super) fn table<'a>(view: View<'a>, options: &ReadOptions, fps: Option<f64>) -> Result<Region<'a>, TableError> {
-    let rows = || (0..view.rows()).collect::<Vec<usize>>();
-    let width = view.cells(0).collect::<Vec<_>>().iter().rposition(|cell| !cell.is_empty()).map_or(1, |last| last + 1);
+    let filled = |row: usize| view.cells(row).collect::<Vec<_>>().iter().rposition(|cell| !cell.is_empty());
+    // Numbers by themselves above rows of several, as programs write what else they keep.
+    let several = filled(view.rows() - 1) > Some(0);
+    let first = (0..view.rows()).find(|&row| !several || filled(row) > Some(0)).unwrap_or(0);
+    let rows = || (first..view.rows()).collect::<Vec<usize>>();
+    let width = filled(first).map_or(1, |last| last + 1);
     let listed = options.height_unit.as_deref().is_some_and(|unit| unit != "px") || options.time_unit.is_some();
     let name = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect::<Vec<String>>();
     if width == 1 && (options.fps.is_none() || listed) {
@@ -65,7 +69,7 @@ pub(super) fn table<'a>(view: View<'a>, options: &ReadOptions, fps: Option<f64>)
     }
     // A first column that ascends counts frames, or seconds.
     let (mut ascends, mut whole, mut last) = (width > 1, true, f64::NEG_INFINITY);
-    for row in 0..view.rows() {
+    for row in rows() {
         let value = match view.read(row, 0) {
             Cell::Number(measured) => measured.value,
             _ => f64::NAN,
@@ -74,7 +78,7 @@ pub(super) fn table<'a>(view: View<'a>, options: &ReadOptions, fps: Option<f64>)
         whole &= value.fract() == 0.0;
         last = value;
     }
-    if fps.is_none() && !(ascends && (!whole && width == 3 || width < 4 && a_path(view, width - 1))) {
+    if fps.is_none() && !(ascends && (!whole && width == 3 || width < 4 && a_path(view, first, width - 1))) {
         return Err(view.error(0, 0, "the table has no header: its first line is numbers").nothing().help(
             "name the columns, such as --header bounce,height_cm or --header time_s,height_m; \
                  for a track of pixels give the frames a second, such as --fps 100",
@@ -88,14 +92,16 @@ pub(super) fn table<'a>(view: View<'a>, options: &ReadOptions, fps: Option<f64>)
         (_, false) => (&["x", "y"], true),
     };
     let mut header: Vec<String> = name(names);
-    header.resize(view.width(0).max(header.len()), String::new());
+    header.resize(view.width(first).max(header.len()), String::new());
     let units = (Some(Unit::SECOND), Some(Unit::PIXEL));
-    Ok(Region { frames, units, given: true, ..Region::new(view, header, 0, rows()) })
+    let alone = |row: usize| LeftAside::new(Part::Row, shown(view.cell(row, 0)), Why::Note).at(view.line(row, 0));
+    let aside = (0..first).map(alone).collect();
+    Ok(Region { frames, units, given: true, aside, ..Region::new(view, header, first, rows()) })
 }
 
 /// Whether numbers one below the other are places of what moves: many, each near the one before.
-fn a_path(view: View<'_>, column: usize) -> bool {
-    let places: Vec<f64> = (0..view.rows()).filter_map(|row| view.number(row, column)).collect();
+fn a_path(view: View<'_>, first: usize, column: usize) -> bool {
+    let places: Vec<f64> = (first..view.rows()).filter_map(|row| view.number(row, column)).collect();
     let (low, high) = places.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(*y), h.max(*y)));
     let mut steps: Vec<f64> = places.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
     places.len() >= FRAMES && median(&mut steps).is_some_and(|step| step < NEAR * (high - low))
