@@ -50,6 +50,30 @@ proptest! {
         prop_assert!(matches!(found.as_slice(), [("tennis", a), ("golf", b)] if (a - e).abs() < 2e-3 && (b - e - 0.1).abs() < 2e-3), "{:?}", found);
     }
 
+    /// Objects of a list that state a condition, and no words, are told apart by it.
+    #[test]
+    fn conditions_of_objects_tell_them_apart(
+        e in 0.4f64..0.8,
+        condition in prop::sample::select(vec![
+            ("ball_temp_C", 23, 45), ("temperature (°C)", 5, 60), ("pressure_kPa", 40, 70), ("ball temp F", 41, 140),
+        ]),
+        lists: bool,
+    ) {
+        let of = |state: i32, e: f64| {
+            let shots = if lists {
+                let lists = |of: fn((f64, f64)) -> f64| joined(drops(e), ",", |d| of(d).to_string());
+                format!("{{\"drop_cm\": [{}], \"rebound_cm\": [{}]}}", lists(|d| d.0), lists(|d| d.1))
+            } else {
+                format!("[{}]", joined(drops(e), ",", |(h, r)| format!("{{\"drop_cm\": {h}, \"rebound_cm\": {r}}}")))
+            };
+            format!("{{\"{}\": {state}, \"shots\": {shots}}}", condition.0)
+        };
+        let report = fit(&format!("{{\"series\": [{}, {}]}}", of(condition.1, e), of(condition.2, e + 0.1)));
+        let found: Vec<(&str, f64)> = report.groups().iter().map(|g| (g.name.as_str(), g.report.cor().unwrap().value)).collect();
+        let right = matches!(found.as_slice(), [(_, a), (_, b)] if (a - e).abs() < 2e-3 && (b - e - 0.1).abs() < 2e-3);
+        prop_assert!(right && found.iter().all(|(name, _)| name.contains(condition.0)), "{:?}", found);
+    }
+
     /// A record that says that it does not count is left aside, and named.
     #[test]
     fn records_that_were_withdrawn_do_not_count(

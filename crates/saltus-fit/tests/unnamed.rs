@@ -1,6 +1,8 @@
 //! What files say otherwise than by the names of columns: by their own name, by what joins the
 //! cells of LaTeX, by the numbers of a signal, by a line of which nothing was read.
 
+use crate::film::{Ball, Contact, noisy};
+use crate::noise::Noise;
 use crate::typed::{fit, read, trusted};
 use proptest::prelude::*;
 use saltus_cases::cases;
@@ -43,6 +45,21 @@ proptest! {
         }
         let mixed = rows + "50,100\n100,50\n";
         prop_assert!(named(name, &mixed).is_err());
+    }
+
+    /// A number by itself above rows of several, as programs write what else they keep, is none of
+    /// them, however the rows begin.
+    #[test]
+    fn a_number_above_rows_of_several_is_none_of_them(
+        (e, cor) in prop::sample::select(vec![(0.66, (|_| 0.66) as fn(f64) -> f64), (0.74, |_| 0.74), (0.83, |_| 0.83)]),
+        kept in prop::sample::select(vec!["120\n", "# name: fps\n# type: scalar\n60\n\n\n", "30\n2024\n", ""]),
+        indent in prop::sample::select(vec!["", " ", "   "]),
+    ) {
+        let ball = Ball { drop: 1.1, release: 0.2, gravity: 9.81, drag: 0.0, cor, contact: Contact::Instant };
+        let film = noisy(&ball.film(60.0, 2.4), &mut Noise(12), 1e-3);
+        let rows: String = film.iter().map(|(t, y)| format!("{indent}{t:.6} 0.004 {y:.4}\n")).collect();
+        let report = fit(&format!("{kept}# name: traj\n{rows}"));
+        prop_assert!(near(report.cor().unwrap().value, e, 0.01), "{}", report);
     }
 
     /// What joins two columns of LaTeX makes one cell of theirs, an error or the digits behind a

@@ -362,13 +362,13 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
 
     /// What follows a jump at time `t`, `at_once` after another: another arc, unless jumps at one
     /// time contract or a limit of the run is reached.
-    #[inline]
+    #[inline(always)]
     fn after_jump(&self, edge: A::Edge, t: f64, at_once: bool) -> Next<A> {
         if at_once || self.over().is_some() { self.after_last_jump(edge, t, at_once) } else { Next::Arc }
     }
 
     /// Which limit of the run is reached.
-    #[inline]
+    #[inline(always)]
     fn over(&self) -> Option<Stop<A::Edge>> {
         let options = &self.arc.options;
         if self.at.jumps >= options.most_jumps {

@@ -124,17 +124,21 @@ impl<S: State> Contraction<S> {
     ///
     /// Where rounding spoils the durations (`hidden`) before they are as short as that, nothing
     /// better can be had later: the ratios decide if they are clearly below one.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn limit(&self, elapsed: f64, hidden: bool) -> Option<Ahead> {
-        if self.count == 0 || self.last(0) > FAR * FAR * f64::EPSILON * elapsed && !hidden {
-            None
-        } else if hidden {
-            self.certified(f64::INFINITY, 1.0 - SMALL)
-        } else {
-            // Too short to resolve: nothing moves. What rounding or a step leaves of ratios of one
-            // is no contraction.
-            self.certified(resolution(elapsed), 1.0 - TINY).map(|ahead| Ahead { cycle: 0, ..ahead })
+        let open = self.count == 0 || self.last(0) > FAR * FAR * f64::EPSILON * elapsed && !hidden;
+        if open { None } else { self.near(elapsed, hidden) }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn near(&self, elapsed: f64, hidden: bool) -> Option<Ahead> {
+        if hidden {
+            return self.certified(f64::INFINITY, 1.0 - SMALL);
         }
+        // Too short to resolve: nothing moves. What rounding or a step leaves of ratios of one is no
+        // contraction.
+        self.certified(resolution(elapsed), 1.0 - TINY).map(|ahead| Ahead { cycle: 0, ..ahead })
     }
 
     fn certified(&self, resolution: f64, most: f64) -> Option<Ahead> {

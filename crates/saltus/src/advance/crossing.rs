@@ -6,7 +6,7 @@ use crate::automaton::Automaton;
 use crate::automaton::refusal::guard_undefined;
 use crate::certainty::{FAR, FEW, ROUGHLY, SMALL, SURELY};
 use crate::cross::{
-    AT_START, Crossing, FirstFall, Powers, SAMPLES, Searched, Start, Undefined, first_fall_of_polynomial,
+    AT_START, Crossing, Evidence, FirstFall, Powers, SAMPLES, Searched, Start, Undefined, first_fall_of_polynomial,
     first_fall_on_step, settle, stay_clear,
 };
 use crate::error::Error;
@@ -68,6 +68,17 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 None
             };
             let by_powers = along.as_ref().map_or(FirstFall::Unclear, |along| along.first_fall(start));
+            // As most are on most steps: nothing of what is looked for of others is set up.
+            if matches!(by_powers, FirstFall::Nowhere)
+                && along.as_ref().is_some_and(|along| along.powers.turns().is_none())
+            {
+                spent = if start == Start::Spent { spent.or(Some(edge)) } else { spent };
+                if let Some(observer) = &mut observer {
+                    let evidence = Evidence::Excluded;
+                    observer.inspection(&Inspection { mode, edge, start: now, span: limit, evidence });
+                }
+                continue;
+            }
             let mut near = None;
             let searched = match by_powers {
                 FirstFall::Nowhere => Searched::solved(None),

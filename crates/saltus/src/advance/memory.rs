@@ -191,7 +191,7 @@ impl<E: Copy + PartialEq, S: State> Memory<E, S> {
     }
 
     /// An arc from `x` that took time has ended.
-    #[inline]
+    #[inline(always)]
     pub(super) fn went(&mut self, x: &S, duration: f64) {
         let alike = |y: &S| y.len() == x.len();
         let (largest, slope) = (self.largest.take().filter(alike), self.slope.take().filter(alike));
