@@ -6,9 +6,9 @@ mod wheel;
 
 use std::f64::consts::TAU;
 
-use saltus::nalgebra::Vector3;
+use saltus::nalgebra::{Vector2, Vector3};
 use saltus::return_map::{Continuation, End, Fate, Kind, MapError, ReturnMap, Selection};
-use saltus::{About, Automaton, Edges, Linearize, Number, Refusal, Simulation};
+use saltus::{About, Automaton, Edges, Entry, Linearize, Number, Refusal, Simulation};
 
 #[test]
 fn questions_without_an_answer() {
@@ -20,6 +20,111 @@ fn questions_without_an_answer() {
     for (parameter, to) in [(1, 0.1), (0, 0.001), (0, f64::NAN)] {
         let error = Continuation::of(&map, family, parameter).follow([1.0], 0.001, to).unwrap_err();
         assert!(matches!(error, MapError::Question(_)), "{error}");
+    }
+}
+
+/// The oscillator of van der Pol, whose velocity falls through zero at its tops: a section that is
+/// only passed. Length and time have units of their own.
+struct Relaxing {
+    time: f64,
+    length: f64,
+}
+
+impl Linearize for Relaxing {
+    type Parameters = [f64; 0];
+    fn parameters(&self) -> [f64; 0] {
+        []
+    }
+    fn flow_over<D: Number>(&self, (): (), _t: D, [x, v]: [D; 2], _: [D; 0]) -> [D; 2] {
+        let (y, u) = (x / self.length, v * (self.time / self.length));
+        [v, ((D::one() - y * y) * u - y) * (self.length / (self.time * self.time))]
+    }
+    fn guard_over<D: Number>(&self, (): (), _t: D, [_, v]: [D; 2], _: [D; 0]) -> D {
+        v
+    }
+    fn reset_over<D: Number>(&self, (): (), _t: D, x: [D; 2], _: [D; 0]) -> [D; 2] {
+        x
+    }
+}
+
+impl Automaton for Relaxing {
+    type Mode = ();
+    type State = Vector2<f64>;
+    type Edge = ();
+
+    fn flow(&self, (): (), t: f64, x: &Vector2<f64>) -> Vector2<f64> {
+        self.flow_at((), t, x)
+    }
+    fn edges(&self, (): ()) -> Edges<'_, ()> {
+        Edges::from([()])
+    }
+    fn guard(&self, (): (), t: f64, x: &Vector2<f64>) -> f64 {
+        self.guard_at((), t, x)
+    }
+    fn reset(&self, (): (), (): (), t: f64, x: &Vector2<f64>) -> Result<((), Vector2<f64>), Refusal> {
+        Ok(((), self.reset_at((), t, x)))
+    }
+    fn about(&self, (): ()) -> About {
+        About::new().entry(Entry::Wait)
+    }
+}
+
+/// A return to a section that is only passed takes a whole period, in whatever units: its amplitude
+/// and period are those of the literature, its multiplier is that of the flow once around.
+#[test]
+fn a_section_that_is_only_passed() {
+    for (time, length) in [(1.0, 1.0), (1e-9, 1.0), (1.0, 1e-6), (1e9, 1e12), (1e-9, 1e-9)] {
+        let relaxing = Relaxing { time, length };
+        let section = Selection::of((), ((), Vector2::new(2.0 * length, 0.0)), [0]).unwrap();
+        let orbit = ReturnMap::of(Simulation::of(&relaxing), section).fixed_point([1.9 * length]).unwrap();
+        assert!((orbit.q[0] / length - 2.008_619_86).abs() < 1e-7, "{time} {length}: {:?}", orbit.q);
+        assert!((orbit.period / time - 6.663_286_859_3).abs() < 1e-8, "{time} {length}: {}", orbit.period);
+        assert!((orbit.multipliers[0].re - 8.597e-4).abs() < 1e-6, "{time} {length}: {:?}", orbit.multipliers);
+    }
+}
+
+/// A coordinate that is held and does not come back is refused, whatever is beside it: a lift at
+/// z that sinks by a hundredth a turn, beside a pressure in pascals.
+#[test]
+fn a_held_coordinate_has_a_unit_of_its_own() {
+    #[derive(Clone, Copy)]
+    struct Lift;
+    impl Linearize for Lift {
+        type Parameters = [f64; 0];
+        fn parameters(&self) -> [f64; 0] {
+            []
+        }
+        fn flow_over<D: Number>(&self, (): (), _t: D, [_, _, v]: [D; 3], _: [D; 0]) -> [D; 3] {
+            [D::zero(), v, D::from(-10.0)]
+        }
+        fn guard_over<D: Number>(&self, (): (), _t: D, [_, y, _]: [D; 3], _: [D; 0]) -> D {
+            y - 0.5
+        }
+        fn reset_over<D: Number>(&self, (): (), _t: D, [p, y, v]: [D; 3], _: [D; 0]) -> [D; 3] {
+            [p, y + 0.01, -v * 0.5 + 2.0]
+        }
+    }
+    impl Automaton for Lift {
+        type Mode = ();
+        type State = Vector3<f64>;
+        type Edge = ();
+        fn flow(&self, (): (), t: f64, x: &Vector3<f64>) -> Vector3<f64> {
+            self.flow_at((), t, x)
+        }
+        fn edges(&self, (): ()) -> Edges<'_, ()> {
+            Edges::from([()])
+        }
+        fn guard(&self, (): (), t: f64, x: &Vector3<f64>) -> f64 {
+            self.guard_at((), t, x)
+        }
+        fn reset(&self, (): (), (): (), t: f64, x: &Vector3<f64>) -> Result<((), Vector3<f64>), Refusal> {
+            Ok(((), self.reset_at((), t, x)))
+        }
+    }
+    for pressure in [0.0, 1.0, 101_325.0] {
+        let section = Selection::of((), ((), Vector3::new(pressure, 0.5, 3.0)), [2]).unwrap();
+        let error = ReturnMap::of(Simulation::of(&Lift), section).fixed_point([3.5]).unwrap_err();
+        assert!(error.to_string().contains("coordinate 1 is 0.51"), "{pressure}: {error}");
     }
 }
 

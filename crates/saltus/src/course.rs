@@ -133,6 +133,13 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         Checkpoint::new(self.at.clone(), self.arc.memory.clone())
     }
 
+    /// The run begins just after a jump by `edge`, whose root is spent.
+    #[cfg(feature = "num-dual")]
+    pub(crate) fn begin_behind(&mut self, edge: A::Edge) {
+        let Stage { mode, span: Span { now, .. }, .. } = self.at;
+        self.arc.begin_behind(mode, edge, now.seconds(), &self.at.state);
+    }
+
     /// Advances to the end.
     ///
     /// # Errors

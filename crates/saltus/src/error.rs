@@ -233,7 +233,7 @@ fn on_the_way(f: &mut fmt::Formatter<'_>, kind: ErrorKind, note: Option<&str>, c
             note.unwrap_or("?")
         ),
         ErrorKind::Series => f.write_str(
-            "the series or exact solution does not start from the state with the slope that the flow gives: write the same flow in Automaton::solution and Automaton::flow, or in series or exact and mode of a Hybrid",
+            "the series or exact solution is not that of the flow, from the state and with its slope: write the same flow in Automaton::solution and Automaton::flow, or in series or exact and mode of a Hybrid",
         ),
         ErrorKind::Sparsity => write!(
             f,

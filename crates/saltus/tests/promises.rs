@@ -2,7 +2,7 @@
 //! harm.
 
 use proptest::prelude::*;
-use saltus::{Edge, Entry, ErrorKind, Hybrid, Signal, Simulation};
+use saltus::{Automaton, Edge, Edges, Entry, ErrorKind, Hybrid, Refusal, Signal, Simulation, Solution};
 use saltus_cases::cases;
 
 use crate::methods::methods;
@@ -107,5 +107,68 @@ proptest! {
                 prop_assert!(promised.iter().zip(&plain).all(|(a, b)| (a - b).abs() < 1e-5), "{:?} {:?}", promised, plain);
             }
         }
+    }
+}
+
+/// A weight on a spring that swings at a `rate`, and a formula of one that swings at another.
+struct Swing {
+    rate: f64,
+    formula: f64,
+}
+
+impl Swing {
+    fn at(&self, (): (), _t: f64, x: &[f64; 2], s: f64) -> [f64; 2] {
+        let (sin, cos) = (self.formula * s).sin_cos();
+        [x[0] * cos + x[1] / self.formula * sin, x[1] * cos - x[0] * self.formula * sin]
+    }
+}
+
+impl Automaton for Swing {
+    type Mode = ();
+    type State = [f64; 2];
+    type Edge = ();
+
+    fn flow(&self, (): (), _t: f64, x: &[f64; 2]) -> [f64; 2] {
+        [x[1], -self.rate * self.rate * x[0]]
+    }
+    fn solution(&self, (): (), _t: f64, _x: &[f64; 2]) -> Solution<Self> {
+        Solution::Formula(Self::at)
+    }
+    fn edges(&self, (): ()) -> Edges<'_, ()> {
+        Edges::from([()])
+    }
+    fn guard(&self, (): (), _t: f64, x: &[f64; 2]) -> f64 {
+        x[0]
+    }
+    fn reset(&self, (): (), (): (), _t: f64, x: &[f64; 2]) -> Result<((), [f64; 2]), Refusal> {
+        Ok(((), [0.0, -x[1]]))
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(cases(300)))]
+
+    /// An exact solution that starts as the flow does, and goes on otherwise, is an error; that of
+    /// the flow is none, in whatever units, however long its arcs.
+    #[test]
+    fn an_exact_solution_of_another_flow_is_an_error(
+        (power, size, span) in (-6.0..6.0_f64, -6.0..6.0_f64, 0.0..4.0_f64),
+        (place, speed) in (0.1..2.0_f64, -1.0..1.0_f64),
+        of in prop::sample::select(vec![1.0, 0.0, 0.5, 0.9, 1.1, 2.0]),
+    ) {
+        let (rate, size) = (10_f64.powf(power), 10_f64.powf(size));
+        let (start, end) = ([size * place, size * speed * rate], 10_f64.powf(span) / rate);
+        let error = if of == 1.0 { None } else { Some(ErrorKind::Series) };
+        let swing = Swing { rate, formula: if of == 0.0 { 1.01 * rate } else { of * rate } };
+        let found = Simulation::of(&swing).run((), start, 0.0..end).map_err(|failed| failed.error.kind());
+        prop_assert_eq!(found.err(), error, "a formula");
+
+        let fall = -size * rate * rate;
+        let ball = Hybrid::new()
+            .mode("flight", move |_t, x: &[f64; 2]| [x[1], fall])
+            .exact("flight", move |_t, x| [*x, [x[1], fall], [0.5 * of * fall, 0.0]].into())
+            .edge("flight", "flight", |_t, x| x[0], |_t, x| [0.0, -0.9 * x[1]]);
+        let found = Simulation::of(&ball).run("flight", start, 0.0..end.min(3.0 / rate)).map_err(|failed| failed.error.kind());
+        prop_assert_eq!(found.err(), error, "a polynomial");
     }
 }

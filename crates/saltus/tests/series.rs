@@ -152,7 +152,7 @@ fn a_series_of_another_flow_is_refused() {
     assert_eq!(error.kind(), ErrorKind::Series);
     assert_eq!(
         error.to_string(),
-        "the series or exact solution does not start from the state with the slope that the flow gives: write the same flow in Automaton::solution and Automaton::flow, or in series or exact and mode of a Hybrid (t = 0, mode \"decay\", state [1.0])"
+        "the series or exact solution is not that of the flow, from the state and with its slope: write the same flow in Automaton::solution and Automaton::flow, or in series or exact and mode of a Hybrid (t = 0, mode \"decay\", state [1.0])"
     );
     let flat = Hybrid::new().mode("decay", |_t, x: &f64| -x).series("decay", |_t, [x, _]| [-x, x]);
     let error = Simulation::of(&flat).run("decay", 1.0, 0.0..1.0).unwrap_err().error;

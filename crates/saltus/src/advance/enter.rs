@@ -13,6 +13,8 @@ use crate::state::State;
 use crate::step::Stepper;
 use crate::time::Time;
 
+#[cfg(feature = "num-dual")]
+use super::memory::Spent;
 use super::shared::Step;
 use super::{Advance, Wall};
 
@@ -69,6 +71,20 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         Ok(None)
     }
 
+    /// The run begins at `x` just after a jump by `edge`: where its guard is zero, but for rounding,
+    /// that root is spent.
+    #[cfg(feature = "num-dual")]
+    pub(crate) fn begin_behind(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State) {
+        if !self.has(mode, edge) {
+            return;
+        }
+        self.memory.stats.guards += 1;
+        let g = self.guard(edge, t, x);
+        if g.abs() <= ROUNDINGS * self.still(edge, t, x, g) {
+            (self.memory.spent, self.memory.last) = (Some(Spent { edge, slack: FEW * g.abs() }), Some(edge));
+        }
+    }
+
     /// Whether the state is at the wall of a mode's `only` edge as it is entered: counts where no
     /// formula gives the edge's fall.
     #[inline]
@@ -102,6 +118,14 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if g <= (self.guard(edge, t + FAR * self.tick(t), nudged) - g).abs() {
             self.find_wall(edge, t, x, g);
         }
+    }
+
+    /// Whether a guard `g` above zero is clear of it, as [`Self::look_near`] finds.
+    #[inline]
+    pub(super) fn clear_at_glance(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> bool {
+        let nudged = self.nudged(x);
+        self.memory.stats.guards += 1;
+        g > (self.guard(edge, t + FAR * self.tick(t), &nudged) - g).abs()
     }
 
     /// The state is at a wall if rounding alone may have left its guard `g`.
@@ -231,18 +255,31 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// Of the edges listed before one that is due at once, or refused, the first whose guard is
     /// zero but for rounding and falls: in the order listed it is taken before.
     #[cold]
-    fn first_of(&mut self, mode: A::Mode, t: f64, x: &A::State) -> Option<A::Edge> {
+    pub(super) fn first_of(&mut self, mode: A::Mode, t: f64, x: &A::State) -> Option<A::Edge> {
         for k in 0..self.memory.walls.len() {
             let Wall { edge, level, .. } = self.memory.walls[k];
             let still = self.still(edge, t, x, level);
-            let slope = self.guard_slope(mode, edge, t, x, level, still);
-            let longest = self.glance(mode, t, x).max(FAR * self.tick(t));
-            if slope < 0.0 && -slope * longest > ROUNDINGS * still {
+            if self.falls_on_from(mode, edge, t, x, (level, still)) {
                 self.memory.slack = FEW * level.abs();
                 return Some(edge);
             }
         }
         None
+    }
+
+    /// Whether a guard that is zero but for `rounding`, which leaves `g` of it, falls along the flow
+    /// by more than that.
+    pub(super) fn falls_on_from(
+        &mut self,
+        mode: A::Mode,
+        edge: A::Edge,
+        t: f64,
+        x: &A::State,
+        (g, rounding): (f64, f64),
+    ) -> bool {
+        let slope = self.guard_slope(mode, edge, t, x, g, rounding);
+        let longest = self.glance(mode, t, x).max(FAR * self.tick(t));
+        slope < 0.0 && -slope * longest > ROUNDINGS * rounding
     }
 
     /// The longest time over which a guard's slope is looked at: a part of the last arc's duration;

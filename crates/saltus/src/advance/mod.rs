@@ -242,7 +242,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
         // What is left of the span may be the rounding of the jumps' times.
         if remaining <= FEW * f64::EPSILON * elapsed {
-            return Ok(Begun::Over);
+            let due = if self.memory.walls.is_empty() { None } else { self.first_of(mode, now.seconds(), x) };
+            return Ok(due.map_or(Begun::Over, Begun::Crossing));
         }
         Ok(Begun::Open { exact: !self.options.stepped && (smooth || self.smooth == Smooth::ALWAYS) })
     }
@@ -284,6 +285,12 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let mut end = end?;
         if !self.tied.is_empty() {
             end = self.in_order(mode, x, now, end);
+        }
+        if let ArcEnd::Stop { stop: Stop::Time, time, state } = &end {
+            let (time, state) = (*time, state.clone());
+            if let Some(edge) = self.due_at_end(mode, (x, now), (&state, time)) {
+                end = ArcEnd::Crossing { edge, time, before: state };
+            }
         }
         if let Some(edge) = self.held_down.take() {
             let (ArcEnd::Crossing { time, .. } | ArcEnd::Stop { time, .. }) = end;

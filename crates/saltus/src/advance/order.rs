@@ -4,7 +4,7 @@
 use std::mem;
 
 use crate::automaton::Automaton;
-use crate::certainty::{FEW, MINUTE};
+use crate::certainty::{FEW, MINUTE, SURELY};
 use crate::state::State;
 use crate::step::Stepper;
 use crate::time::Time;
@@ -24,17 +24,17 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// The end of an arc from `x`: of the edges that may be tied with the one that ends it, and are
     /// listed before it, by the first whose guard rounding alone keeps from zero there.
     ///
-    /// Its guard was above zero as the arc began, and was not found to fall before. Of arcs whose
-    /// durations show rounding no order is better than another.
+    /// Its guard was above zero as the arc began, and was not found to fall before. Of arcs that
+    /// time does not resolve no order is better than another.
     #[cold]
     #[inline(never)]
     pub(super) fn in_order(&mut self, mode: A::Mode, x: &A::State, now: Time, end: ArcEnd<A>) -> ArcEnd<A> {
         let tied = mem::take(&mut self.tied);
         let ArcEnd::Crossing { edge: last, time, before } = end else { return end };
-        if self.memory.is_short(time.since(now)) {
+        let t = time.seconds();
+        if time.since(now) <= SURELY * f64::EPSILON * t.abs() {
             return ArcEnd::Crossing { edge: last, time, before };
         }
-        let t = time.seconds();
         let reach = self.reach_of(mode, [now.seconds(), t], [x, &before]);
         let sizes = reach.with(|i| reach.get(i).max(self.size(x, i)));
         let listed = self.automaton.edges(mode);
@@ -50,5 +50,41 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             }
         }
         ArcEnd::Crossing { edge: last, time, before }
+    }
+
+    /// The edge by which an arc from `x` ends where its span does, at `time` in the state `y`: the
+    /// first whose guard rounding alone keeps from zero there, and falls on. A span's end, and a
+    /// tick, come behind what crosses then.
+    pub(super) fn due_at_end(
+        &mut self,
+        mode: A::Mode,
+        (x, now): (&A::State, Time),
+        (y, time): (&A::State, Time),
+    ) -> Option<A::Edge> {
+        let t = time.seconds();
+        if !(time.since(now) > SURELY * f64::EPSILON * t.abs()) {
+            return None;
+        }
+        let mut sizes = None;
+        for edge in self.automaton.edges(mode).iter() {
+            if self.memory.spent_as(edge).is_some() {
+                continue;
+            }
+            self.memory.stats.guards += 1;
+            let g = self.guard(edge, t, y);
+            if g < 0.0 || self.clear_at_glance(edge, t, y, g) || self.guard(edge, now.seconds(), x) <= 0.0 {
+                continue;
+            }
+            let sizes = sizes.get_or_insert_with(|| {
+                let reach = self.reach_of(mode, [now.seconds(), t], [x, y]);
+                reach.with(|i| reach.get(i).max(self.size(x, i)))
+            });
+            let rounding = self.rounding(edge, t, y, g, sizes);
+            if g <= FEW * rounding && self.falls_on_from(mode, edge, t, y, (g, rounding)) {
+                (self.memory.slack, self.memory.leapt) = (FEW * g, false);
+                return Some(edge);
+            }
+        }
+        None
     }
 }

@@ -3,7 +3,7 @@
 
 use crate::automaton::Automaton;
 use crate::automaton::solution::Solution;
-use crate::certainty::{SURELY, TINY};
+use crate::certainty::{FAR, FEW, ROUGHLY, SMALL, SURELY, TINY};
 use crate::error::{Error, ErrorKind, Place};
 use crate::sparsity::{Sparsity, listed};
 use crate::state::State;
@@ -46,7 +46,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     #[inline(never)]
     fn promised(&mut self, mode: A::Mode, times: [f64; 2], ends: [&A::State; 2]) -> Result<(), Error> {
         let ([began, _], [x, _]) = (times, ends);
-        if !self.options.stepped && !self.solves(mode, began, x) {
+        if !self.options.stepped && !(self.solves(mode, began, x) && self.goes_on(mode, times, x)) {
             return Err(Error::new(ErrorKind::Series, Place::new(began, mode, None::<A::Edge>, x)));
         }
         self.hold(mode, times, ends)
@@ -67,6 +67,37 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             Solution::Formula(formula) => is(&formula(self.automaton, mode, t, x, 0.0), x),
             _ => true,
         }
+    }
+
+    /// Whether the exact solution from `x` goes on with the slope of the flow: within the arc, for
+    /// where it ends the flow may switch.
+    fn goes_on(&self, mode: A::Mode, [began, ended]: [f64; 2], x: &A::State) -> bool {
+        let [part, _] = PARTS;
+        let (s, solution) = (part * (ended - began), self.automaton.solution(mode, began, x));
+        let Some(y) = solution.at(self.automaton, mode, began, x, s).filter(|_| s > 0.0) else { return true };
+        let flow = |t: f64, x: &A::State| self.automaton.flow(mode, self.smooth.within(t), x);
+        let (first, slope) = (flow(began, x), flow(began + s, &y));
+        // What a coordinate moves by on the arc, for one that turns has no slope of its own.
+        let size = |i: usize| first.get(i).abs().max(slope.get(i).abs()).max((y.get(i) - x.get(i)).abs() / s);
+        let differs = |one: &A::State, most: &dyn Fn(usize) -> f64| {
+            (0..y.len()).any(|i| (one.get(i) - slope.get(i)).abs() > most(i))
+        };
+        // So short a time that the flow hardly changes.
+        let mut h = SMALL * s;
+        let turns =
+            |h: f64| differs(&flow(began + s + h, &y.with(|i| y.get(i) + h * slope.get(i))), &|i| SMALL * size(i));
+        while h > FAR * f64::EPSILON * s && turns(h) {
+            h *= ROUGHLY;
+        }
+        let [before, after] = [s - h, s + h].map(|s| solution.at(self.automaton, mode, began, x, s));
+        let (Some(before), Some(after)) = (before, after) else { return true };
+        let across = y.with(|i| (after.get(i) - before.get(i)) / (2.0 * h));
+        let rounding = |i: usize| FEW * f64::EPSILON * (x.get(i).abs() + y.get(i).abs() + s * size(i)) / h;
+        let resolved = (0..y.len()).all(|i| rounding(i) <= SMALL * size(i) || size(i) == 0.0);
+        !(resolved
+            && across.is_finite()
+            && slope.is_finite()
+            && differs(&across, &|i| FEW * SMALL * size(i) + rounding(i)))
     }
 
     /// The pattern of the Jacobian of `mode` at `x`, where it has as many coordinates as the state

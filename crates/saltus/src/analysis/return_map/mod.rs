@@ -301,7 +301,9 @@ impl<'a, A: Linearize, X: Section<A, K>, const K: usize, M: Stepper> ReturnMap<'
         edges: &mut Vec<A::Edge>,
     ) -> Result<JumpOf<B>, MapError> {
         let mut until = Until { edge: self.section.edge(), left: self.returns, edges, back: None };
-        let end = simulation.drive(mode, x, t..f64::INFINITY, &mut until)?;
+        let mut course = simulation.start(mode, x, t..f64::INFINITY)?;
+        course.begin_behind(self.section.edge());
+        let end = course.finish(&mut until)?;
         until.back.ok_or_else(|| MapError::NoReturn { why: end.stop.to_string(), t: end.time.seconds(), q: Vec::new() })
     }
 

@@ -86,8 +86,14 @@ impl<A: Linearize, const K: usize> Section<A, K> for Selection<A::Mode, A::State
     }
     fn flaw(&self, x: &A::State) -> Option<String> {
         let others = || (0..x.len()).filter(|i| !self.which.contains(i));
-        let size = (0..x.len()).map(|i| x.get(i).abs()).fold(0.0, f64::max);
-        let moved = others().find(|&i| (x.get(i) - self.state.get(i)).abs() > HELD * size.max(self.state.get(i).abs()));
+        let largest = (0..x.len()).map(|i| x.get(i).abs()).fold(0.0, f64::max);
+        // Coordinates have units of their own; one that is held at zero, but for errors of those
+        // beside it, has no size but theirs.
+        let size = |i: usize| {
+            let held = self.state.get(i).abs();
+            if held > HELD * largest { held } else { largest }
+        };
+        let moved = others().find(|&i| (x.get(i) - self.state.get(i)).abs() > HELD * size(i));
         moved.map(|i| {
             let (edge, held, came) = (self.edge, self.state.get(i), x.get(i));
             format!("after edge {edge:?} coordinate {i} is {came}, not {held} as the section holds it: give it what the edge leaves, or select it too")
