@@ -230,7 +230,7 @@ proptest! {
     #[test]
     fn units_that_were_mixed_up(e in 0.4f64..0.9) {
         let table = |drop: &str, rebound: &str, [of, to]: [f64; 2]| {
-            let rows: String = [1.0, 1.5, 2.0].map(|h| format!("{},{:.4}\n", of * h, to * h * e * e)).concat();
+            let rows: String = [1.0, 1.5, 2.0].map(|h| format!("{},{:.3}\n", of * h, to * h * e * e)).concat();
             fit(&format!("Drop ({drop}),Rebound ({rebound})\n{rows}"))
         };
         for (drop, rebound, of) in [("m", "cm", 1.0), ("ft", "in", 4.0), ("cm", "mm", 100.0)] {

@@ -35,6 +35,8 @@ fn files() -> Vec<PathBuf> {
         "read/layout.rs",
         "read/limits.rs",
         "read/check.rs",
+        "read/computed.rs",
+        "read/strange.rs",
         "read/grid/grouped.rs",
         "read/columns/conditions.rs",
         "read/columns/coordinates.rs",

@@ -243,7 +243,7 @@ fn what_is_measured_is_blamed_before_what_is_written() {
 fn repeats_scatter_and_bounces_fall() {
     let table = |name: &str, factor: &dyn Fn(usize) -> f64| {
         let rows = [60.0, 80.0, 100.0, 120.0].map(|h| {
-            let cells = (1..4).map(|n| format!(",{:.2}", h * factor(n)));
+            let cells = (1..4).map(|n| format!(",{:.1}", h * factor(n)));
             format!("{h}{}\n", cells.collect::<String>())
         });
         format!("drop height (cm),{name} 1 (cm),{name} 2 (cm),{name} 3 (cm)\n{}", rows.concat())

@@ -120,6 +120,13 @@ pub enum Doubt {
         /// The one before it.
         other: String,
     },
+    /// Each height is the one before it times one factor, to more digits than a ball keeps to.
+    Computed {
+        /// The factor.
+        factor: String,
+        /// How many heights follow from the one before.
+        heights: usize,
+    },
     /// Rows are taken for the bounces of one drop, one after the other, and in one trial of them
     /// the heights rise.
     Order {

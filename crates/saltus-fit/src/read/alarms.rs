@@ -10,14 +10,15 @@ use serde::de::{IntoDeserializer, value};
 use super::against;
 use super::aside::{Part, Why};
 use super::clause::{frame_rate, names_ball};
+use super::computed::recurs;
 use super::grid::{Grid, shown};
 use super::heading::Heading;
-use super::listed::Listed;
 use super::phrases::{DENIED, Phrase, denies};
 use super::region::Region;
 use super::said::stem;
-use super::vocabulary::{Atom, ROWS, folded};
-use super::words::{Kind, Word, split, unaddressed};
+use super::strange;
+use super::vocabulary::{Atom, ROWS, folded, unparted};
+use super::words::{Kind, Word, marks, split, unaddressed};
 use super::{Event, LeftAside, Table, Trial};
 use crate::finding::{Change, Doubt, Note};
 use crate::quantity::Ball;
@@ -25,9 +26,6 @@ use crate::quantity::Ball;
 /// A change, a tab, a phrase in lower case without accents, whose last word may go on where it ends
 /// in `*`.
 const ALARMS: &str = include_str!("alarms.tsv");
-
-/// Words of prose that say nothing of numbers, wherever they stand.
-static PLAIN: Listed = Listed::new(include_str!("plain.txt"));
 
 /// A remark of which so many words are not understood tells more than who measured, where and with
 /// what: one in a hundred of those that change nothing has as many.
@@ -82,18 +80,49 @@ fn changes(text: &str) -> Vec<Change> {
     let text = folded(&unaddressed(text));
     let mut found = Vec::new();
     for clause in text.split([',', ';', ':', '.', '(', ')', '!', '?']) {
-        let words: Vec<&str> = clause.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).collect();
+        let words: Vec<&str> =
+            clause.split(|c: char| !c.is_alphanumeric() && !marks(c)).filter(|word| !word.is_empty()).collect();
         let denies = |word: &&str| denies(word);
         for (at, word) in words.iter().enumerate() {
+            if word.contains(unparted) {
+                found.extend(within(word));
+                continue;
+            }
             let denied = |rest: &Rest| {
-                let after = words.get(at + 1 + rest.words.len());
-                after.is_some_and(denies) || words[at.saturating_sub(DENIED)..at].iter().any(denies)
+                let behind = at + 1 + rest.words.len();
+                let after = words.get(behind);
+                // What was copied from a program is what was typed there.
+                let pasted = words[behind.min(words.len())..].iter().take(DENIED).any(|word| Phrase::Program.is(word));
+                rest.change == Change::Unread && pasted
+                    || after.is_some_and(denies)
+                    || words[at.saturating_sub(DENIED)..at].iter().any(denies)
             };
             for end in word.char_indices().map(|(end, c)| end + c.len_utf8()) {
                 let rests = phrases().get(&word[..end]).into_iter().flatten();
                 let stands = rests.filter(|rest| rest.stands(end == word.len(), &words[at..]) && !denied(rest));
                 found.extend(stands.map(|rest| rest.change));
             }
+        }
+    }
+    found
+}
+
+/// What a run of a script that parts no words by blanks says that changes readings, but what is
+/// denied right before it, or behind it, where the verb ends.
+fn within(run: &str) -> Vec<Change> {
+    let letters: Vec<usize> = run.char_indices().map(|(at, _)| at).chain([run.len()]).collect();
+    let bends = |word: &str| word.contains(|c: char| matches!(c, '\u{3040}'..='\u{309f}'));
+    let denying = |from: usize, to: usize, bent: bool| {
+        let part = &run[letters[from]..letters[to.min(letters.len() - 1)]];
+        let mut all = Phrase::Not.all().iter().chain(Phrase::Nothing.all());
+        all.any(|word| word.contains(unparted) && bends(word) == bent && part.contains(word))
+    };
+    let mut found = Vec::new();
+    for from in 0..letters.len() - 1 {
+        for to in from + 1..letters.len() {
+            let rests = phrases().get(&run[letters[from]..letters[to]]).into_iter().flatten();
+            let denied = || denying(from.saturating_sub(DENIED), from, false) || denying(to, to + DENIED + 1, true);
+            found.extend(rests.filter(|rest| rest.words.is_empty() && !denied()).map(|rest| rest.change));
         }
     }
     found
@@ -116,18 +145,11 @@ fn pools(text: &str) -> bool {
     (0..words.len()).any(all) || balls.len() > 1
 }
 
-/// Whether a text tells so much that is not understood that it may change anything. A word in a
-/// sentence that begins with a capital is a name.
-fn tells(text: &str) -> bool {
-    let named = |(n, word): &(usize, Word)| *n > 0 && word.text.starts_with(char::is_uppercase);
-    let words = split(&unaddressed(text)).into_iter().enumerate().filter(|word| !named(word));
-    let strange = |word: &Word| matches!(word.kind, Kind::Unknown) && !PLAIN.has(&folded(&word.text));
-    words.filter(|(_, word)| strange(word)).count() >= STORY
-}
-
-/// How many words a text has, numbers not counted.
+/// How many words a text has, numbers not counted; two letters, more or less, are one of a script
+/// that parts none by blanks.
 fn words(text: &str) -> usize {
-    text.split(|c: char| !c.is_alphanumeric()).filter(|word| word.starts_with(char::is_alphabetic)).count()
+    let words = text.split(|c: char| !c.is_alphanumeric()).filter(|word| word.starts_with(char::is_alphabetic));
+    words.map(|word| word.chars().filter(|c| unparted(*c)).count().div_ceil(2).max(1)).sum()
 }
 
 /// Why what bears a name is no reading: `Simulation`, `dynamic model A`, `wrong ball, do not use`.
@@ -153,7 +175,8 @@ pub(super) struct Remark<'a> {
 impl<'a> Remark<'a> {
     fn of(text: &'a str, line: Option<u64>) -> Self {
         let mut changes = changes(text);
-        changes.extend(tells(text).then_some(Change::Unclear));
+        changes.extend(recurs(text).then_some(Change::Unread));
+        changes.extend((strange::count(text) >= STORY).then_some(Change::Unclear));
         Self { text, line, above: None, changes }
     }
 
@@ -253,7 +276,6 @@ mod tests {
 
     #[test]
     fn every_phrase_changes_something_and_is_found() {
-        assert!(PLAIN.is_in_order() && PLAIN.words().iter().all(|word| folded(word) == *word));
         for (change, phrase) in entries() {
             let change = change.unwrap();
             assert_eq!(folded(phrase), phrase);

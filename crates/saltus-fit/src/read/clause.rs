@@ -9,7 +9,7 @@ use super::limits::MANY;
 use super::phrases::Phrase;
 use super::units::{Dimension, Unit};
 use super::vocabulary::{Atom, folded, unparted};
-use super::words::{Kind, Word, split};
+use super::words::{Kind, Word, split, without_brackets};
 use super::written::{rounds_to, step};
 use crate::quantity::Ball;
 
@@ -108,13 +108,20 @@ pub(super) fn drop(text: &str) -> Option<DropHeight> {
             // Other languages say `from` at the end of the word: `180 cm magasságból ejtettük`.
             let placed = Phrase::From.is(&last) || begins && (leads || Phrase::At.is(&last));
             let all = || before.iter().chain(&after);
+            // A height that says by its ending that something came from it needs no more than that.
+            let ending = begins && Phrase::From.is(&after.first().map(|w| folded(&w.text)).unwrap_or_default());
+            let ending = ending && from.is_some_and(|words| !words.iter().any(|w| w.is(Atom::Tool)));
             let of_ball = placed && (follows || leads) && beyond && all().any(names_ball);
-            let of_ball = of_ball && !all().any(|w| turns(w) || matches!(w.kind, Kind::Number(_)));
+            let of_ball = of_ball || ending && beyond && all().any(names_ball);
+            // What brackets hold is a remark: `the ball (size 7)`.
+            let bare = split(&without_brackets(named)).into_iter().any(|w| matches!(w.kind, Kind::Number(_)));
+            let counted = bare || after.iter().any(|w| matches!(w.kind, Kind::Number(_)));
+            let of_ball = of_ball && !counted && !all().any(turns);
             // Something else was done as well, from there: `dropped it and filmed it from`.
             let and = |w: &Word| Phrase::And.is(&folded(&w.text));
             let other = from.is_some_and(|words| Phrase::From.is(&last) && words.iter().any(and));
             // `180 cm from the wall` is no height.
-            let away = Phrase::From.is(&after.first().map(|w| folded(&w.text)).unwrap_or_default());
+            let away = !begins && Phrase::From.is(&after.first().map(|w| folded(&w.text)).unwrap_or_default());
             let other = other || away && !after.iter().any(|w| w.is(Atom::Floor));
             let fits = before.iter().all(plain) && (whole || said && !after.iter().any(turns)) || told || of_ball;
             return (fits && !other).then_some(height);

@@ -103,7 +103,7 @@ pub(super) fn stated(lines: &[Line<'_>], names: &[Line<'_>]) -> Option<Datum> {
     let all = || lines.iter().flat_map(|&(line, text)| sentences(text).map(move |clause| (line, clause)));
     let marks = all().filter_map(|(line, clause)| Some(Zero { line, ..mark(clause).or_else(|| off(clause))? }));
     let mut ends: Vec<(End, Of, Line<'_>)> = lines.iter().flat_map(|line| ends(*line, false)).collect();
-    ends.extend(names.iter().flat_map(|name| self::ends(*name, true)));
+    ends.extend(of_names(names));
     let Some(&(first, _, (line, clause))) = ends.iter().find(|(end, ..)| *end != End::Bottom) else {
         return marks.map(Datum::Zero).next();
     };
@@ -131,6 +131,33 @@ pub(super) fn stated(lines: &[Line<'_>], names: &[Line<'_>]) -> Option<Datum> {
     })
 }
 
+/// The ends of the ball that names of columns name. Behind the name of a rebound alone it may be
+/// that of its flight: `rebound (top)`.
+fn of_names<'a>(names: &[Line<'a>]) -> Vec<(End, Of, Line<'a>)> {
+    let mut found: Vec<_> = names.iter().flat_map(|name| ends(*name, true)).collect();
+    let released = found.iter().any(|(end, of, _)| *end != End::Bottom && *of == Of::Releases);
+    found.retain(|(end, _, (_, clause))| released || *end == End::Bottom || !names_end(clause));
+    found
+}
+
+/// Whether a text is the end of a ball and nothing else: `top`, `lower edge`.
+pub(super) fn names_end(text: &str) -> bool {
+    let words = split(text);
+    let silent = |word: &Word| word.is(Atom::Filler) && !word.is(Atom::Bottom);
+    let end = words.iter().filter(|word| point(word).is_some()).count();
+    end == 1 && words.iter().all(|word| point(word).is_some() || silent(word))
+}
+
+/// The end of a ball that a word names.
+fn point(word: &Word) -> Option<End> {
+    match &*folded(&word.text) {
+        _ if word.is(Atom::Bottom) => Some(End::Bottom),
+        text if Phrase::Top.is(text) => Some(End::Top),
+        text if Phrase::Middle.is(text) => Some(End::Middle),
+        _ => None,
+    }
+}
+
 /// The ends of the ball that a line names, and of which heights: what a clause of it says of these
 /// holds for the next ones. The lower end of a column needs no ball.
 fn ends<'a>((line, text): Line<'a>, name: bool) -> Vec<(End, Of, Line<'a>)> {
@@ -139,7 +166,11 @@ fn ends<'a>((line, text): Line<'a>, name: bool) -> Vec<(End, Of, Line<'a>)> {
     for clause in sentences(text) {
         let words = split(clause);
         of = heights(&words).unwrap_or(of);
-        let bare = || (name && words.iter().any(|word| word.is(Atom::Bottom))).then_some(End::Bottom);
+        let bare = || {
+            let bottom = words.iter().any(|word| word.is(Atom::Bottom)).then_some(End::Bottom);
+            let alone = || words.iter().find_map(point).filter(|_| names_end(clause));
+            bottom.or_else(alone).filter(|_| name)
+        };
         found.extend(end(&words).or_else(bare).map(|end| (end, of, (line, clause))));
     }
     found
@@ -241,14 +272,8 @@ fn diameter(clause: &str) -> Option<(String, f64, Unit)> {
 fn end(words: &[Word]) -> Option<End> {
     let ball = |word: &Word| (word.is(Atom::Group) || word.is(Atom::Label)) && !word.is(Atom::Floor);
     let silent = |word: &Word| word.is(Atom::Filler) && !word.is(Atom::Bottom);
-    let of = |word: &Word| match &*folded(&word.text) {
-        _ if word.is(Atom::Bottom) => Some(End::Bottom),
-        text if Phrase::Top.is(text) => Some(End::Top),
-        text if Phrase::Middle.is(text) => Some(End::Middle),
-        _ => None,
-    };
     let found = words.iter().enumerate().find_map(|(n, word)| {
-        let end = of(word)?;
+        let end = point(word)?;
         let next = words[n + 1..].iter().position(|word| !silent(word)).map(|next| n + 1 + next);
         let behind = next.filter(|&next| ball(&words[next])).map(|next| next + 1);
         // `the ball's top`; what goes on is of something else, `the top of the ball's flight`.

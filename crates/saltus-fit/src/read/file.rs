@@ -25,7 +25,7 @@ use super::title::{self, Stated};
 use super::tracks;
 use super::vocabulary::{Atom, folded};
 use super::workbook;
-use super::{Event, Metadata, ReadOptions, Reading, Table, against, assemble, check, pool, said, sports};
+use super::{Event, Metadata, ReadOptions, Reading, Table, against, assemble, check, computed, pool, said, sports};
 use crate::error::TableError;
 use crate::finding::{Doubt, Note};
 use crate::statistics::FILMED;
@@ -260,6 +260,7 @@ fn bounces(region: &mut Region<'_>, options: &ReadOptions, metadata: Metadata) -
     table.metadata.ratios = columns.of_ratios();
     table.metadata.speeds = columns.of_speeds();
     table.doubts.extend(doubts.into_iter().flatten().chain(columns.doubts).chain(check::copied(&table.trials)));
+    table.doubts.extend(computed::doubt(&table));
     Ok(table)
 }
 
@@ -422,7 +423,8 @@ fn sheet(name: &str, part: &Part, options: &ReadOptions, noted: Option<f64>) -> 
         let numbers = |n: usize| region.rows.iter().any(|&row| region.view.is_number(row, n));
         Columns::named(region, options, false).is_ok_and(|columns| columns.values().any(|(n, _, _)| numbers(n)))
     };
-    let notes = || region::tables(view).is_empty() && !programs::turned(&grid).as_ref().is_some_and(measured);
+    let notes =
+        || !region::tables(view).iter().any(measures) && !programs::turned(&grid).as_ref().is_some_and(measured);
     match read(&grid, options, noted) {
         Ok(table) => Ok(Ok(table)),
         // What is no table of bounces is left aside; a table that cannot be read is an error.

@@ -5,14 +5,17 @@ mod flights;
 mod inside;
 mod kept;
 mod meaning;
+mod rates;
 mod repeats;
 mod signs;
 
 use super::aside::Why;
+use super::datum::names_end;
 use super::units::{Dimension, Scale, Unit};
 use super::vocabulary::{Atom, folded, misspelt, narrow, short_for};
 use super::words::{Kind, Word, numbers, split, unaddressed};
-pub(super) use inside::{DropHeight, Of, is_sign, rate, release, released};
+pub(super) use inside::{DropHeight, Of, is_sign, release, released};
+pub(super) use rates::rate;
 
 /// What the numbers of a column measure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -272,54 +275,6 @@ impl Heading {
         self.has(Atom::Top) || self.has(Atom::Max) && (self.has(Atom::Height) || !time)
     }
 
-    /// One of the coordinates that columns of one name hold, `ball_x` beside `ball_y`, or of one
-    /// number, `X1` beside `Y1`.
-    fn coordinate(text: &str, header: &[String]) -> Option<Self> {
-        let parted = |text: &str| {
-            let end = text.find(['(', '[']).unwrap_or(text.len());
-            let name = text[..end].trim_end();
-            let sign = name.trim_end_matches(|c: char| c.is_ascii_digit());
-            if let (true, "x" | "y" | "z" | "X" | "Y" | "Z") = (sign.len() < name.len(), sign) {
-                let letter = sign.chars().next()?;
-                return Some((name[sign.len()..].to_owned(), letter, format!("{letter} {}", &text[end..])));
-            }
-            let letter = name.chars().next_back().filter(|c| matches!(c.to_ascii_lowercase(), 'x'..='z'))?;
-            let stem = name.strip_suffix(letter)?;
-            // What a colon ends is the name of the run.
-            let joined = stem.chars().all(char::is_lowercase) && letter.is_lowercase();
-            let apart = (joined || stem.ends_with(['_', ' ', '.', '-', '/']))
-                && !stem.trim_end().ends_with(':')
-                && stem.contains(char::is_alphabetic);
-            apart.then(|| (stem.to_owned(), letter, format!("{letter} {}", &text[end..])))
-        };
-        let (stem, letter, plain) = parted(text)?;
-        let other =
-            |name: &String| parted(name).is_some_and(|(of, l, _)| of == stem && !l.eq_ignore_ascii_case(&letter));
-        let mut heading = header.iter().any(other).then(|| Self::parse(&plain).called(text))?;
-        // Where several bodies are followed, each column is of the one that it names.
-        let body = |name: &String| parted(name).map(|(of, _, _)| of).filter(|of| of.contains(char::is_alphabetic));
-        let several = header.iter().filter_map(body).any(|of| of != stem);
-        let name = stem.trim_end_matches(['_', ' ', '.', '-', '/']);
-        if let (true, true, Meaning::Value(value)) = (several, name != stem, &mut heading.meaning) {
-            let run = split(name).iter().any(|word| word.is(Atom::Trial));
-            *(if run { &mut value.trial } else { &mut value.group }) = name.to_owned();
-        }
-        Some(heading)
-    }
-
-    /// `h_i` beside `h_f`: before and after, where `h_i` by itself is counted.
-    fn initial(text: &str, header: &[String]) -> Option<Self> {
-        let parted = |text: &str| {
-            let (sign, rest) = text.split_once('_')?;
-            let end = rest.find(|c: char| !c.is_alphanumeric()).unwrap_or(rest.len());
-            let signs = sign.chars().count() == 1 && matches!(&rest[..end], "i" | "f");
-            signs.then(|| (sign.to_owned(), rest[..end].to_owned()))
-        };
-        let (sign, event) = parted(text)?;
-        let other = |name: &String| parted(name).is_some_and(|(of, at)| of == sign && at != event);
-        header.iter().any(other).then(|| Self::parse(&text.replacen('_', "", 1)).called(text))
-    }
-
     /// The heading of a column whose cells are written as hundredths.
     pub(super) fn hundredths(self) -> Self {
         Self::parse(&format!("{} (%)", self.text)).called(&self.text)
@@ -444,6 +399,15 @@ impl Heading {
                 let words = split(&left);
                 words.iter().any(|w| w.is(Atom::Group)) && !words.iter().any(|w| w.is(Atom::Label) || w.is(Atom::Trial))
             };
+            // The end of the ball that its height is read at: `drop height (top)`.
+            let of_height = || {
+                let words = split(&left);
+                let placed = |w: &Word| w.is(Atom::Release) || w.is(Atom::Rebound);
+                words.iter().any(|w| w.is(Atom::Height)) && words.iter().any(placed)
+            };
+            if names_end(inside) && of_height() {
+                continue;
+            }
             let letter = inside.chars().count() == 1 && inside.chars().all(char::is_alphabetic);
             if letter && Unit::parse(inside).is_none() && of_condition() {
                 self.unit = self.unit.or(Some(Unit::OTHER));

@@ -1,6 +1,7 @@
 //! Records in JSON, and in XML, as tables: a list of objects is a row each, a list a member is a
 //! column each.
 
+mod outlined;
 mod tagged;
 mod united;
 
@@ -144,14 +145,18 @@ impl<'de> Visitor<'de> for Reader {
     }
 }
 
-/// The tables of a text in JSON, of records a line each, or in XML; `None` if it holds none, or is
+/// The tables of a text in JSON, of records a line each, in XML or in YAML; `None` if it holds none, or is
 /// so long that its values, of some eight times its length, would take more than a file may hold.
 pub(super) fn parts(bytes: &[u8]) -> Option<Vec<Part>> {
     let text = std::str::from_utf8(bytes).ok()?.trim_start_matches('\u{feff}').trim_start();
-    if !text.starts_with(['{', '[', '<']) || 8 * text.len() > limits::bytes() {
+    if 8 * text.len() > limits::bytes() {
         return None;
     }
-    let whole = if text.starts_with('<') { tagged::tagged(text)? } else { valued(text)? };
+    let whole = match text.chars().next()? {
+        '<' => tagged::tagged(text)?,
+        '{' | '[' => valued(text)?,
+        _ => outlined::outlined(text)?,
+    };
     let whole = united::united(whole);
     let mut found = Vec::new();
     tables("", &whole, "", &mut found);

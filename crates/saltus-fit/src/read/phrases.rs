@@ -130,12 +130,26 @@ pub(super) enum Phrase {
     Whither,
     /// Behind a number, how often something was done.
     Times,
-    /// What a rate of frames or samples is written in.
+    /// A sign of a rate of frames or samples, behind its number,
     Rated,
+    /// what such a rate counts, in a form that is no heading,
+    Frames,
+    /// what stands before the second that it is of,
+    Per,
+    /// and that second.
+    Second,
+    /// What a list of what was used, where or by whom, is called.
+    Used,
+    /// Behind a Korean word, what it does in a sentence.
+    Particle,
+    /// A program that keeps what is typed.
+    Program,
+    /// What a floor is called at the end of its name.
+    Flooring,
 }
 
 impl Phrase {
-    const ALL: [(&'static str, Self); 62] = [
+    const ALL: [(&'static str, Self); 69] = [
         ("missing", Self::Missing),
         ("about", Self::About),
         ("half", Self::Half),
@@ -198,6 +212,13 @@ impl Phrase {
         ("whither", Self::Whither),
         ("times", Self::Times),
         ("rated", Self::Rated),
+        ("frames", Self::Frames),
+        ("per", Self::Per),
+        ("second", Self::Second),
+        ("used", Self::Used),
+        ("particle", Self::Particle),
+        ("program", Self::Program),
+        ("flooring", Self::Flooring),
     ];
 
     /// The phrases of this kind, in the order of the file.

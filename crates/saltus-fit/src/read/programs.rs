@@ -3,7 +3,7 @@
 
 mod bare;
 mod bodies;
-mod regressi;
+pub(super) mod regressi;
 
 use std::collections::HashSet;
 
@@ -49,9 +49,6 @@ pub(super) fn tables<'a>(
     }
     if first(0).to_lowercase().starts_with("vernier format") {
         return vernier(view);
-    }
-    if let Some(pages) = regressi::tables(view) {
-        return Ok(pages.into());
     }
     if let Some(found) = bodies::tables(view) {
         return Ok(found);

@@ -114,7 +114,11 @@ pub(super) fn of_another_motion(region: &Region<'_>, columns: &Columns) -> Optio
     let other = |text: &&str| {
         let words = split(text);
         let denied = |at: usize| words[at.saturating_sub(DENIED)..at].iter().any(|word| denies(&folded(&word.text)));
-        (0..words.len()).any(|at| words[at].is(Atom::Motion) && !denied(at))
+        // What a ball does after its last bounce is none of it: `after contact 8 it rolls`.
+        let bounced = |word: &Word| word.is(Atom::Impact) || word.is(Atom::Rebound);
+        let after = words.iter().position(|word| word.is(Atom::After));
+        let later = |at: usize| after.is_some_and(|after| after < at && words[after..at].iter().any(bounced));
+        (0..words.len()).any(|at| words[at].is(Atom::Motion) && !denied(at) && !later(at))
     };
     texts(region).find(other).map(|text| Doubt::Motion { text: shown(text) })
 }

@@ -6,9 +6,11 @@ use std::ops::Range;
 use super::cell::{self, Cell};
 use super::digits;
 use super::encoding::decoded;
+use super::exported;
 use super::forms::{self, named_list};
 use super::heading::{Heading, Meaning};
 use super::limits::MANY;
+use super::programs::regressi;
 use super::units::Unit;
 use super::wrapped;
 use crate::error::TableError;
@@ -45,6 +47,12 @@ pub(super) fn text<'a>(name: &str, bytes: &'a [u8]) -> Result<Text<'a>, TableErr
     };
     let taken = |text: Cow<'a, str>, form: fn(&str) -> Option<String>| form(&text).map_or(text, Cow::Owned);
     let around = [
+        regressi::tables,
+        exported::row_names,
+        exported::points,
+        exported::samples,
+        exported::sections,
+        exported::frames,
         wrapped::headed,
         wrapped::repeated,
         forms::dumped,

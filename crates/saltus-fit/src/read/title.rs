@@ -318,7 +318,16 @@ pub(super) fn doubted(region: &Region<'_>, table: &mut Table) {
     };
     let tells =
         |text: &str| turned(text) && (!felt || wanted(text)) && !aimed(text) && !placed(text) && !sentence(text);
+    // Names above other numbers than those of the table are of these.
+    let of_others = |aside: &LeftAside| {
+        let below = aside.line.map(|line| region.view.grid.row_of(line) + 1);
+        below.is_some_and(|row| {
+            let numbers = (0..region.view.width(row)).filter(|&n| region.view.is_number(row, n)).count();
+            row < region.header_row && numbers > 1 && numbers == region.view.cells(row).count()
+        })
+    };
     let titles = |aside: &&LeftAside| match row(aside) {
+        _ if of_others(aside) => false,
         Some([name, value]) => tells(&name) || turned(&value) && wanted(&value),
         None => tells(&aside.name),
     };

@@ -109,6 +109,8 @@ pub(super) fn split(text: &str) -> Vec<Word> {
             }
         } else if of_a_ball(&folded) {
             Kind::Known(&[Atom::Label])
+        } else if of_a_floor(&folded) {
+            Kind::Known(&[Atom::Label, Atom::Floor])
         } else if let Some(parts) = symbol(&folded).or_else(|| compound(&folded)) {
             words.extend(parts.map(|(text, atoms)| Word { text: text.to_owned(), kind: Kind::Known(atoms) }));
             continue;
@@ -149,6 +151,13 @@ pub(super) fn split(text: &str) -> Vec<Word> {
 /// `Wasserball`; shorter words end so by chance, as `global` does.
 fn of_a_ball(word: &str) -> bool {
     let which = Phrase::Ball.all().iter().find_map(|ball| word.strip_suffix(ball));
+    which.is_some_and(|which| which.chars().count() >= PART && which.chars().all(char::is_alphabetic))
+}
+
+/// Whether a word ends in what floors are called, behind a part that says which: `Sportboden`,
+/// `gummimatta`.
+fn of_a_floor(word: &str) -> bool {
+    let which = Phrase::Flooring.all().iter().find_map(|floor| word.strip_suffix(floor));
     which.is_some_and(|which| which.chars().count() >= PART && which.chars().all(char::is_alphabetic))
 }
 
@@ -308,6 +317,16 @@ pub(super) fn unaddressed(text: &str) -> Cow<'_, str> {
     Cow::Owned(text.split_whitespace().filter(|word| !address(word)).collect::<Vec<_>>().join(" "))
 }
 
+/// A text without what its brackets hold.
+pub(super) fn without_brackets(text: &str) -> String {
+    let (mut found, mut rest) = (String::new(), text);
+    while let Some((before, inside)) = rest.split_once('(') {
+        found.push_str(before);
+        rest = inside.split_once(')').map_or("", |(_, after)| after);
+    }
+    found + rest
+}
+
 /// Whether a word of a text is of this kind.
 pub(super) fn has_word(text: &str, phrase: Phrase) -> bool {
     pieces(text).iter().any(|word| phrase.is(&folded(word)))
@@ -389,7 +408,7 @@ pub(super) fn pieces(text: &str) -> Vec<String> {
 /// Whether a character is a mark of the letter before it, and no letter by itself: an accent, the
 /// sign that a consonant of an Indian script has no vowel, the points of Hebrew and what shortens
 /// its words.
-fn marks(c: char) -> bool {
+pub(super) fn marks(c: char) -> bool {
     // The second half of the block of each Indian script begins with its sign of no vowel.
     let bare = matches!(c, '\u{900}'..='\u{d7f}') && matches!(u32::from(c) % 0x80, 0x3c | 0x4d);
     bare || matches!(c, '\u{300}'..='\u{36f}' | '\u{591}'..='\u{5c7}' | '\u{5f3}' | '\u{5f4}' | '\u{e47}'..='\u{e4e}')

@@ -1,8 +1,10 @@
 //! What stands around a text of readings and is no part of it: the marks of a mail that is quoted,
 //! the letters and numbers at the edges of a spreadsheet, the times before the lines of a chat.
 
+use super::Event;
 use super::cell::{self, Cell, Measured};
 use super::heading::{Heading, What};
+use super::named::event;
 use super::phrases::Phrase;
 use super::stamps::of_samples;
 use super::units::Dimension;
@@ -154,7 +156,7 @@ const FRAMES: u32 = 60;
 /// but that the ball hit the floor the times are the readings. `None` where lines bear no times.
 pub(super) fn unstamped(text: &str) -> Option<String> {
     let filled = || text.lines().filter(|line| !line.trim().is_empty());
-    if let Some(times) = hits(text).or_else(|| bare_stamps(text)).or_else(|| sent(text)) {
+    if let Some(times) = hits(text).or_else(|| bare_stamps(text)).or_else(|| sent(text)).or_else(|| struck(text)) {
         return Some(times);
     }
     let stamps: Vec<Stamped<'_>> = filled().filter_map(stamped).collect();
@@ -188,6 +190,29 @@ fn hits(text: &str) -> Option<String> {
         return None;
     }
     Some(below_name(text, (first, &heading), hit))
+}
+
+/// The times of the lines of a log that begin with a word for a contact, whatever else they say, `HIT
+/// peak=-3.3 dB`; its other lines are remarks. `None` where most say something else.
+fn struck(text: &str) -> Option<String> {
+    let hit = |line: &str| {
+        let stamp = stamped(line).filter(|stamp| !stamp.chat && exact(stamp.time))?;
+        let word = stamp.said.split([' ', ':', '=', '\t']).next().filter(|word| word.chars().count() > 1)?;
+        (event(word) == Some(Event::Contact)).then(|| stamp.time.to_owned())
+    };
+    let first = text.lines().position(|line| hit(line).is_some())?;
+    let hits = text.lines().filter(|line| hit(line).is_some()).count();
+    let stamps = text.lines().filter(|line| stamped(line).is_some()).count();
+    // A number that rises from line to line is the time by the clock of the device.
+    let last = |line: &str| {
+        let said = line.trim_end_matches(|c: char| !c.is_ascii_digit());
+        let digits =
+            said.rfind(|c: char| !(c.is_ascii_digit() || matches!(c, '.' | '-'))).map_or(said, |at| &said[at..]);
+        digits.trim_start_matches(|c: char| !(c.is_ascii_digit() || c == '-')).parse::<f64>().ok()
+    };
+    let lasts: Vec<Option<f64>> = text.lines().filter(|line| hit(line).is_some()).map(last).collect();
+    let clocked = lasts.windows(2).all(|pair| pair[0].is_some() && pair[0] < pair[1]);
+    (hits > 2 && 2 * hits > stamps && !clocked).then(|| below_name(text, (first, "time of impact"), hit))
 }
 
 /// Whether a time is written to a part of a second.
@@ -231,6 +256,10 @@ fn sent(text: &str) -> Option<String> {
         let parts = parts.filter(|parts| parts.first().is_some_and(|(_, _, sent)| sent.unit.is_some()))?;
         let heading = Heading::parse(&format!("{} ({})", parts[0].0, parts[0].1));
         let clock = heading.has(Atom::Impact) || heading.has(Atom::Rebound);
+        // How hard the ball hit is no reading.
+        if clock && parts[0].2.unit.is_some_and(|unit| unit.dimension == Dimension::Other) {
+            return None;
+        }
         let clock = clock && parts[0].2.unit.is_some_and(|unit| unit.dimension == Dimension::Time);
         let cell = |(name, unit, sent): &(String, String, Measured)| match unit.as_str() {
             "" => (name.clone(), sent.value.to_string()),

@@ -253,7 +253,12 @@ impl Builder<'_> {
     pub(super) fn pair(&mut self, row: &Row, track: &Track) -> Result<(), TableError> {
         let timed = track.interval.or(track.total).or(track.nth.first().copied());
         let rebound = track.height.or(track.after).or(track.lost).or(track.share).or(timed);
-        let before = track.release.or(track.before);
+        // Beside the time until the ball rests a height by itself is that of the release.
+        let rests = track.total.filter(|_| track.interval.is_none() && track.after.is_none());
+        let alone = track.height.filter(|&n| !self.columns.columns[n].heading.has(Atom::Rebound));
+        let resting = alone.zip(rests).filter(|_| track.release.or(track.before).is_none() && track.drop.is_none());
+        let rebound = resting.map_or(rebound, |(_, total)| Some(total));
+        let before = track.release.or(track.before).or(resting.map(|(height, _)| height));
         if let Some(share) = track.share.filter(|_| before.is_none() && track.drop.is_none()) {
             return self.rebound(row, track, share, |_| Ok((1.0, None)));
         }

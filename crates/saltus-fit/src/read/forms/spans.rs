@@ -9,8 +9,9 @@ use super::super::units::{Dimension, Unit};
 use super::super::vocabulary::{Atom, folded};
 use super::super::words::{Kind, Word, split};
 
-/// The bounce that a line begins at, and its time; whether that bears a unit of time.
-fn span(line: &str) -> Option<(usize, &str, bool)> {
+/// The bounce that a line begins at, and its time; whether that bears a unit of time. Where a line
+/// says that the times are between bounces, `counted`, these may be called times: `lần 1 -> lần 2`.
+fn span(line: &str, counted: bool) -> Option<(usize, &str, bool)> {
     let marked = line.split_once(": ").or_else(|| line.split_once('=')).or_else(|| line.split_once('\t'));
     // Blanks may part them, where the time bears its unit: `1 -> 2   746 ms`.
     let (name, value) = marked
@@ -30,7 +31,10 @@ fn span(line: &str) -> Option<(usize, &str, bool)> {
     };
     let plain = |word: &Word| {
         let said = [Atom::Between, Atom::Impact, Atom::Rebound, Atom::Filler, Atom::Interval, Atom::Time, Atom::Air];
-        number(word).is_some() || joins(word) || said.iter().any(|atom| word.is(*atom))
+        number(word).is_some()
+            || joins(word)
+            || counted && (word.is(Atom::Trial) || word.is(Atom::Repeat))
+            || said.iter().any(|atom| word.is(*atom))
     };
     let bare = m.unit.is_none() || timed;
     (bare && to == from + 1 && words.iter().all(plain)).then_some((from, value.trim(), timed))
@@ -40,8 +44,14 @@ fn span(line: &str) -> Option<(usize, &str, bool)> {
 /// remarks that measure nothing. `None` where no unit of time stands behind them or above, and
 /// where a bounce is left out.
 pub(super) fn table(text: &str) -> Option<String> {
-    let found: Vec<(usize, &str, bool)> = text.lines().filter_map(span).collect();
-    let first = text.lines().position(|line| span(line).is_some())?;
+    let between = |line: &str| {
+        let words = split(line);
+        let of = |atoms: &[Atom]| words.iter().any(|word| atoms.iter().any(|atom| word.is(*atom)));
+        of(&[Atom::Between]) && of(&[Atom::Impact, Atom::Rebound]) && of(&[Atom::Time, Atom::Interval])
+    };
+    let counted = text.lines().any(between);
+    let found: Vec<(usize, &str, bool)> = text.lines().filter_map(|line| span(line, counted)).collect();
+    let first = text.lines().position(|line| span(line, counted).is_some())?;
     let follows = found.windows(2).all(|pair| pair[1].0 == pair[0].0 + 1);
     // What stands above says that they are times, and in which unit.
     let above = || text.lines().take(first);
@@ -61,11 +71,13 @@ pub(super) fn table(text: &str) -> Option<String> {
         }
     };
     let error = |line: &str| clause::error(line).is_some();
-    let other = |line: &str| span(line).is_none() && !(super::silent(line) || error(line));
+    let other = |line: &str| {
+        span(line, counted).is_none() && !(super::silent(line) || error(line) || clause::drop(line).is_some())
+    };
     if found.len() < 2 || !follows || text.lines().any(other) {
         return None;
     }
-    let spelt = |(n, line): (usize, &str)| match span(line) {
+    let spelt = |(n, line): (usize, &str)| match span(line, counted) {
         // A lone carriage return ends a row, and no line.
         Some((from, value, _)) if n == first => format!("bounce\ttime between bounces\r{from}\t{value}{stated}"),
         Some((from, value, _)) => format!("{from}\t{value}{stated}"),

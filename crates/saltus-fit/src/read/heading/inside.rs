@@ -50,36 +50,6 @@ pub(super) fn ranges(words: &mut Vec<Word>) {
     }
 }
 
-/// The rate of frames or samples that a text states behind a number, `Frame (240 fps)`, `44.1 kHz`,
-/// in 1/s, and the text without it.
-pub(in crate::read) fn rate(text: &str) -> Option<(f64, String)> {
-    let lower = text.to_ascii_lowercase();
-    Phrase::Rated.all().iter().find_map(|unit| {
-        let (at, _) = lower.match_indices(unit).next()?;
-        let after = &text[at + unit.len()..];
-        if after.starts_with(char::is_alphanumeric) {
-            return None;
-        }
-        let head = text[..at].trim_end();
-        let thousands = lower[..at].ends_with('k') && *unit == "hz";
-        let (head, factor) = if thousands { (head[..at - 1].trim_end(), 1000.0) } else { (head, 1.0) };
-        let before = head.trim_end_matches(|c: char| c.is_ascii_digit() || matches!(c, '.' | ','));
-        let value = counted(&head[before.len()..])? * factor;
-        // In brackets what the rate is called: `(fs = 44100 Hz)`, `(filmed at 120 fps)`.
-        let open = before.rfind(['(', '[']).filter(|open| !before[*open..].contains([')', ']']));
-        let before = open.map_or(before, |open| &before[..open]).trim_end_matches([' ', '@', '=', ':', '~']);
-        let before = before.strip_suffix(" at").unwrap_or(before);
-        Some((value, format!("{before} {}", after.trim_start_matches([')', ']']))))
-    })
-}
-
-/// A number above zero, whose comma may part thousands, `44,100`.
-fn counted(text: &str) -> Option<f64> {
-    let thousands = text.split_once(',').is_some_and(|(_, rest)| rest.len() == 3);
-    let plain = if thousands { text.replace(',', "") } else { text.replace(',', ".") };
-    plain.parse().ok().filter(|value: &f64| value.is_finite() && *value > 0.0)
-}
-
 /// Drops that are only counted are not more than this.
 const COUNTED: f64 = 20.0;
 
@@ -93,7 +63,9 @@ pub(in crate::read) fn release(text: &str) -> Option<(DropHeight, String)> {
 pub(in crate::read) fn released(text: &str) -> Option<(DropHeight, &str, &str)> {
     let starts = |(at, c): &(usize, char)| {
         let before = text[..*at].chars().next_back();
-        c.is_ascii_digit() && before.is_none_or(|b| !b.is_alphanumeric() && !matches!(b, '.' | ',' | '_' | '±' | '-'))
+        // Where no blanks part words, a number stands behind any.
+        let apart = |b: char| unparted(b) || !b.is_alphanumeric() && !matches!(b, '.' | ',' | '_' | '±' | '-');
+        c.is_ascii_digit() && before.is_none_or(apart)
     };
     // What stands behind a sign of an error is no height.
     let error = |at: usize| text[..at].trim_end().ends_with(['±', '+', '-', '−']);
@@ -152,7 +124,11 @@ fn part(text: &str) -> Option<Length> {
     // Behind the unit words may follow that no blank parts from it: `2m高さ`.
     let other = |c: char| after.starts_with(|c: char| c.is_ascii_alphabetic()) && (unparted(c) || hangul(c));
     let end = after.find(|c: char| other(c) || !c.is_alphabetic() && !matches!(c, '"' | '\'')).unwrap_or(after.len());
-    let unit = Unit::parse(&after[..end])?;
+    // So they may behind one of their own script: `30厘米自由落下`.
+    let ends = || after[..end].char_indices().map(|(at, c)| at + c.len_utf8());
+    let joined = || after.starts_with(|c: char| unparted(c) || hangul(c));
+    let begun = || ends().rev().find_map(|end| Some((Unit::parse(&after[..end])?, end))).filter(|_| joined());
+    let (unit, end) = Unit::parse(&after[..end]).map(|unit| (unit, end)).or_else(begun)?;
     Some((value, unit, format!("{number} {}", &after[..end]), text.len() - after.len() + end))
 }
 

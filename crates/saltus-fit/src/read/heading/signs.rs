@@ -1,7 +1,10 @@
 //! Names that mean what they do beside the others of their row: coordinates, small Roman numbers
 //! behind a name that comes again, `rebound (i)` beside `rebound (ii)`; and signs of points.
 
-use super::Heading;
+use super::super::units::Dimension;
+use super::super::vocabulary::Atom;
+use super::super::words::split;
+use super::{Heading, Meaning};
 
 /// As many as columns are counted by them.
 const COUNT: [&str; 8] = ["i", "ii", "iii", "iv", "v", "vi", "vii", "viii"];
@@ -14,6 +17,73 @@ impl Heading {
             .or_else(|| Self::initial(text, header))
             .or_else(|| Self::roman(text, header))
             .or_else(|| Self::point(text))
+            .or_else(|| Self::upright(text, header))
+    }
+
+    /// The only component of a speed that is listed, before or after a bounce, `vz before (m/s)`: the
+    /// one that turns round.
+    fn upright(text: &str, header: &[String]) -> Option<Self> {
+        let component = |text: &'_ str| -> Option<(String, usize)> {
+            let lower = text.to_ascii_lowercase();
+            let sign = lower.strip_prefix('v')?.trim_start_matches('_');
+            let axis = sign.chars().next().filter(|c| matches!(c, 'x' | 'y' | 'z'))?;
+            let end = lower.len() - sign.len() + 1;
+            (!sign[1..].starts_with(char::is_alphanumeric)).then(|| (axis.to_string(), end))
+        };
+        let (axis, end) = component(text).filter(|(axis, _)| axis != "x")?;
+        let others = header.iter().filter_map(|name| component(name)).any(|(other, _)| other != axis);
+        let heading = Self::parse(&format!("v{}", &text[end..]));
+        let of_speed = heading.unit.is_some_and(|unit| unit.dimension == Dimension::Speed);
+        let at_impact = heading.has(Atom::Before) || heading.has(Atom::After);
+        (of_speed && at_impact && !others).then(|| heading.called(text))
+    }
+
+    /// One of the coordinates that columns of one name hold, `ball_x` beside `ball_y`, or of one
+    /// number, `X1` beside `Y1`.
+    fn coordinate(text: &str, header: &[String]) -> Option<Self> {
+        let parted = |text: &str| {
+            let end = text.find(['(', '[']).unwrap_or(text.len());
+            let name = text[..end].trim_end();
+            let sign = name.trim_end_matches(|c: char| c.is_ascii_digit());
+            if let (true, "x" | "y" | "z" | "X" | "Y" | "Z") = (sign.len() < name.len(), sign) {
+                let letter = sign.chars().next()?;
+                return Some((name[sign.len()..].to_owned(), letter, format!("{letter} {}", &text[end..])));
+            }
+            let letter = name.chars().next_back().filter(|c| matches!(c.to_ascii_lowercase(), 'x'..='z'))?;
+            let stem = name.strip_suffix(letter)?;
+            // What a colon ends is the name of the run.
+            let joined = stem.chars().all(char::is_lowercase) && letter.is_lowercase();
+            let apart = (joined || stem.ends_with(['_', ' ', '.', '-', '/']))
+                && !stem.trim_end().ends_with(':')
+                && stem.contains(char::is_alphabetic);
+            apart.then(|| (stem.to_owned(), letter, format!("{letter} {}", &text[end..])))
+        };
+        let (stem, letter, plain) = parted(text)?;
+        let other =
+            |name: &String| parted(name).is_some_and(|(of, l, _)| of == stem && !l.eq_ignore_ascii_case(&letter));
+        let mut heading = header.iter().any(other).then(|| Self::parse(&plain).called(text))?;
+        // Where several bodies are followed, each column is of the one that it names.
+        let body = |name: &String| parted(name).map(|(of, _, _)| of).filter(|of| of.contains(char::is_alphabetic));
+        let several = header.iter().filter_map(body).any(|of| of != stem);
+        let name = stem.trim_end_matches(['_', ' ', '.', '-', '/']);
+        if let (true, true, Meaning::Value(value)) = (several, name != stem, &mut heading.meaning) {
+            let run = split(name).iter().any(|word| word.is(Atom::Trial));
+            *(if run { &mut value.trial } else { &mut value.group }) = name.to_owned();
+        }
+        Some(heading)
+    }
+
+    /// `h_i` beside `h_f`: before and after, where `h_i` by itself is counted.
+    pub(super) fn initial(text: &str, header: &[String]) -> Option<Self> {
+        let parted = |text: &str| {
+            let (sign, rest) = text.split_once('_')?;
+            let end = rest.find(|c: char| !c.is_alphanumeric()).unwrap_or(rest.len());
+            let signs = sign.chars().count() == 1 && matches!(&rest[..end], "i" | "f");
+            signs.then(|| (sign.to_owned(), rest[..end].to_owned()))
+        };
+        let (sign, event) = parted(text)?;
+        let other = |name: &String| parted(name).is_some_and(|(of, at)| of == sign && at != event);
+        header.iter().any(other).then(|| Self::parse(&text.replacen('_', "", 1)).called(text))
     }
 
     /// `P1Y`: the place of a point that is followed, by its number and its axis.

@@ -10,7 +10,8 @@ use crate::read::units::Unit;
 
 /// The bodies of such a file; `None` where it is none.
 pub(super) fn tables(view: View<'_>) -> Option<Recognised<'_>> {
-    let found = spots(view).or_else(|| boxes(view)).or_else(|| markers(view));
+    let found = spots(view).or_else(|| boxes(view)).or_else(|| sized(view)).or_else(|| tracked(view));
+    let found = found.or_else(|| markers(view));
     found.filter(|found| !found.regions.is_empty())
 }
 
@@ -18,7 +19,7 @@ pub(super) fn tables(view: View<'_>) -> Option<Recognised<'_>> {
 /// brackets their units.
 fn spots(view: View<'_>) -> Option<Recognised<'_>> {
     let [track, y, frame] = ["track_id", "position_y", "frame"].map(|name| position(view, 0, name));
-    Some(of_bodies(view, track?, [frame?, y?], Some(Program::ImageJ)))
+    Some(of_bodies(view, 1, Some(track?), [frame?, y?], Some(Program::ImageJ)))
 }
 
 /// The corners `x1`, `y1`, `x2`, `y2` of a box about each body that a detector found, beside its
@@ -26,17 +27,51 @@ fn spots(view: View<'_>) -> Option<Recognised<'_>> {
 fn boxes(view: View<'_>) -> Option<Recognised<'_>> {
     let corners = ["x1", "y1", "x2"].iter().all(|name| position(view, 0, name).is_some());
     let [track, y, frame] = ["track_id", "y2", "frame"].map(|name| position(view, 0, name));
-    corners.then_some(of_bodies(view, track?, [frame?, y?], None))
+    corners.then_some(of_bodies(view, 1, Some(track?), [frame?, y?], None))
 }
 
-/// A table for each number of a body: its frames in order, and its places in pixels.
-fn of_bodies(view: View<'_>, body: usize, [frame, y]: [usize; 2], program: Option<Program>) -> Recognised<'_> {
+/// A box about the body in each frame by its place and its size, `frame, x, y, w, h`, beside how
+/// sure the detector is: `h` is no height above the floor. Several bodies have a number or a class.
+fn sized(view: View<'_>) -> Option<Recognised<'_>> {
+    let any = |names: &[&str]| names.iter().find_map(|name| position(view, 0, name));
+    let frame = any(&["frame", "frame_id", "frame_no", "frame_number", "image_id"])?;
+    let y = any(&["y", "cy", "yc", "y_center", "center_y", "ycenter", "bb_top", "top"])?;
+    any(&["w", "width", "bb_width"]).and(any(&["h", "height", "bb_height"]))?;
+    any(&["conf", "confidence", "score", "prob"])?;
+    let body = any(&["track_id", "id", "track", "object_id", "class", "cls", "label", "name"]);
+    Some(of_bodies(view, 1, body, [frame, y], None))
+}
+
+/// Boxes about bodies as trackers write them, without names: the frame, the number of the body, the
+/// left and the upper edge, width and height, how sure it is, and three numbers that are not used.
+fn tracked(view: View<'_>) -> Option<Recognised<'_>> {
+    let number = |row: usize, n: usize| view.number(row, n).filter(|_| view.is_number(row, n));
+    let counts = |row: usize, n: usize| number(row, n).is_some_and(|count| count >= 0.0 && count.fract() == 0.0);
+    let unused = |row: usize| (7..BOX).all(|n| number(row, n) == Some(-1.0));
+    let sized = |row: usize| [4, 5].iter().all(|&n| number(row, n).is_some_and(|size| size > 0.0));
+    let of_box = |row: usize| view.width(row) == BOX && counts(row, 0) && counts(row, 1) && sized(row) && unused(row);
+    let all = view.rows() > 0 && (0..view.rows()).all(of_box);
+    all.then(|| of_bodies(view, 0, Some(1), [0, 3], None))
+}
+
+/// A line of a tracker has so many numbers.
+const BOX: usize = 10;
+
+/// A table for each number of a body, in the rows from `first` on: its frames in order, and its
+/// places in pixels.
+fn of_bodies(
+    view: View<'_>,
+    first: usize,
+    body: Option<usize>,
+    [frame, y]: [usize; 2],
+    program: Option<Program>,
+) -> Recognised<'_> {
     let number = |row: usize| view.number(row, frame).filter(|_| view.is_number(row, y));
-    let mut rows: Vec<(f64, usize)> = (1..view.rows()).filter_map(|row| Some((number(row)?, row))).collect();
+    let mut rows: Vec<(f64, usize)> = (first..view.rows()).filter_map(|row| Some((number(row)?, row))).collect();
     rows.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut bodies: Vec<(&str, Vec<usize>)> = Vec::new();
     for (_, row) in rows {
-        let name = view.cell(row, body);
+        let name = body.map_or("", |body| view.cell(row, body));
         match bodies.iter_mut().find(|(other, _)| *other == name) {
             Some((_, rows)) => rows.push(row),
             None => bodies.push((name, vec![row])),

@@ -46,6 +46,9 @@ pub(super) fn words(doubt: &Doubt) -> String {
             "the readings of '{one}' are those of '{other}' to the last digit, as those of no two balls, floors or heights are: which of them \
              were measured? Take the others out"
         ),
+        Doubt::Computed { factor, heights } => format!(
+            "{heights} heights are those before them times {factor}, to more digits than a ball keeps to: were they measured, or computed?"
+        ),
         Doubt::Order { trial } => format!(
             "the rows are taken for bounces one after the other, and the heights of '{trial}' rise along them: if they are, number them in a \
              column 'bounce'"
