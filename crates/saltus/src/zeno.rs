@@ -136,8 +136,8 @@ impl<S: State> Contraction<S> {
         if hidden {
             return self.certified(f64::INFINITY, 1.0 - SMALL);
         }
-        // Too short to resolve: nothing moves. What rounding or a step leaves of ratios of one is no
-        // contraction.
+        // Too short to resolve: nothing moves. What rounding or a step leaves of ratios of one is
+        // no contraction.
         self.certified(resolution(elapsed), 1.0 - TINY).map(|ahead| Ahead { cycle: 0, ..ahead })
     }
 

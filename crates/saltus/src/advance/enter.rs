@@ -71,8 +71,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         Ok(None)
     }
 
-    /// The run begins at `x` just after a jump by `edge`: where its guard is zero, but for rounding,
-    /// that root is spent.
+    /// The run begins at `x` just after a jump by `edge`: where its guard is zero, but for
+    /// rounding, that root is spent.
     #[cfg(feature = "num-dual")]
     pub(crate) fn begin_behind(&mut self, mode: A::Mode, edge: A::Edge, t: f64, x: &A::State) {
         if !self.has(mode, edge) {
@@ -267,8 +267,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         None
     }
 
-    /// Whether a guard that is zero but for `rounding`, which leaves `g` of it, falls along the flow
-    /// by more than that.
+    /// Whether a guard that is zero but for `rounding`, which leaves `g` of it, falls along the
+    /// flow by more than that.
     pub(super) fn falls_on_from(
         &mut self,
         mode: A::Mode,

@@ -92,7 +92,9 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let [before, after] = [s - h, s + h].map(|s| solution.at(self.automaton, mode, began, x, s));
         let (Some(before), Some(after)) = (before, after) else { return true };
         let across = y.with(|i| (after.get(i) - before.get(i)) / (2.0 * h));
-        let rounding = |i: usize| FEW * f64::EPSILON * (x.get(i).abs() + y.get(i).abs() + s * size(i)) / h;
+        // Numbers below the smallest normal one are rounded as that is.
+        let made_of = |i: usize| x.get(i).abs() + y.get(i).abs() + s * size(i) + f64::MIN_POSITIVE;
+        let rounding = |i: usize| FEW * f64::EPSILON * made_of(i) / h;
         let resolved = (0..y.len()).all(|i| rounding(i) <= SMALL * size(i) || size(i) == 0.0);
         !(resolved
             && across.is_finite()
