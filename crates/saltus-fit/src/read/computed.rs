@@ -16,8 +16,8 @@ const KEEPS: f64 = 0.005;
 /// once in so many powers of ten.
 const CHANCE: f64 = 8.0;
 
-/// Only heights that are written finer by so many powers of ten than a ball keeps to a factor tell: a
-/// rule shows no more.
+/// Only heights that are written finer by so many powers of ten than a ball keeps to a factor tell:
+/// a rule shows no more.
 const FINER: f64 = 1.0;
 
 /// The factors that two heights may have been computed by, and how much it tells that they are of
@@ -142,8 +142,8 @@ mod tests {
         }
     }
 
-    /// A ball that keeps one factor to half a part in a hundred does so twice in a row, to all digits,
-    /// once in so many drops; a factor that was filled in is kept to the last digit.
+    /// A ball that keeps one factor to half a part in a hundred does so twice in a row, to all
+    /// digits, once in so many drops; a factor that was filled in is kept to the last digit.
     #[test]
     fn only_a_factor_beyond_chance_was_filled_in() {
         let told = |e: f64, step: f64, count: i32, off: f64| {

@@ -137,9 +137,9 @@ fn counted(text: &str) -> Option<String> {
     (rows.len() >= SAMPLES).then(|| format!("time (s)\t{}\n\n{}\n", sizes.join("\t"), rows.join("\n")))
 }
 
-/// Sections in brackets with a name and a number a line, `[run1]`, `drop_mm = 150`, `t1 = 812.0`, as
-/// a row each below their names; remarks begin with a semicolon. `None` where there are no two, and
-/// where a line is none of it.
+/// Sections in brackets with a name and a number a line, `[run1]`, `drop_mm = 150`, `t1 = 812.0`,
+/// as a row each below their names; remarks begin with a semicolon. `None` where there are no two,
+/// and where a line is none of it.
 pub(super) fn sections(text: &str) -> Option<String> {
     let section = |line: &'_ str| line.strip_prefix('[')?.strip_suffix(']').map(|name| name.trim().to_owned());
     let mut rows: Vec<(usize, String, Vec<(String, String)>)> = Vec::new();

@@ -145,8 +145,9 @@ impl<'de> Visitor<'de> for Reader {
     }
 }
 
-/// The tables of a text in JSON, of records a line each, in XML or in YAML; `None` if it holds none, or is
-/// so long that its values, of some eight times its length, would take more than a file may hold.
+/// The tables of a text in JSON, of records a line each, in XML or in YAML; `None` if it holds
+/// none, or is so long that its values, of some eight times its length, would take more than a file
+/// may hold.
 pub(super) fn parts(bytes: &[u8]) -> Option<Vec<Part>> {
     let text = std::str::from_utf8(bytes).ok()?.trim_start_matches('\u{feff}').trim_start();
     if 8 * text.len() > limits::bytes() {

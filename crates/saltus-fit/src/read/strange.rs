@@ -21,8 +21,8 @@ pub(super) fn count(text: &str) -> usize {
     }
 }
 
-/// The items of a list that its name says to be of what was used, and where and by whom: `Equipment:
-/// tape, two gates, a steel ball`.
+/// The items of a list that its name says to be of what was used, and where and by whom:
+/// `Equipment: tape, two gates, a steel ball`.
 fn listed(text: &str) -> Option<impl Iterator<Item = &str>> {
     let (name, items) = text.split_once([':', '：'])?;
     let names = split(name).iter().any(|word| Phrase::Used.is(&folded(&word.text)));
@@ -30,8 +30,8 @@ fn listed(text: &str) -> Option<impl Iterator<Item = &str>> {
     (names && parted).then(|| items.split([',', ';', '、', '，', '،']))
 }
 
-/// The words of a text that are not understood. A word in a sentence that begins with a capital is a
-/// name, and so is one with a digit in it; a letter by itself says nothing.
+/// The words of a text that are not understood. A word in a sentence that begins with a capital is
+/// a name, and so is one with a digit in it; a letter by itself says nothing.
 fn strange(text: &str) -> BTreeSet<String> {
     let named = |n: usize, word: &Word| n > 0 && word.text.starts_with(char::is_uppercase);
     let words = split(text).into_iter().enumerate().filter(|(n, word)| !named(*n, word));

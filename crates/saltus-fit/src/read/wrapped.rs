@@ -192,8 +192,8 @@ fn hits(text: &str) -> Option<String> {
     Some(below_name(text, (first, &heading), hit))
 }
 
-/// The times of the lines of a log that begin with a word for a contact, whatever else they say, `HIT
-/// peak=-3.3 dB`; its other lines are remarks. `None` where most say something else.
+/// The times of the lines of a log that begin with a word for a contact, whatever else they say,
+/// `HIT peak=-3.3 dB`; its other lines are remarks. `None` where most say something else.
 fn struck(text: &str) -> Option<String> {
     let hit = |line: &str| {
         let stamp = stamped(line).filter(|stamp| !stamp.chat && exact(stamp.time))?;

@@ -20,8 +20,8 @@ impl Heading {
             .or_else(|| Self::upright(text, header))
     }
 
-    /// The only component of a speed that is listed, before or after a bounce, `vz before (m/s)`: the
-    /// one that turns round.
+    /// The only component of a speed that is listed, before or after a bounce, `vz before (m/s)`:
+    /// the one that turns round.
     fn upright(text: &str, header: &[String]) -> Option<Self> {
         let component = |text: &'_ str| -> Option<(String, usize)> {
             let lower = text.to_ascii_lowercase();

@@ -12,8 +12,8 @@ struct Line {
     said: String,
 }
 
-/// The value of a text that holds a list of records of which one holds a list in brackets; `None` of
-/// any other, and where a line is none of it.
+/// The value of a text that holds a list of records of which one holds a list in brackets; `None`
+/// of any other, and where a line is none of it.
 pub(super) fn outlined(text: &str) -> Option<Node> {
     let listed = |line: &str| line.trim_end().ends_with(']') && line.contains(": [");
     let dashed = |line: &str| line.trim_start().strip_prefix("- ").is_some_and(|record| record.contains(':'));
