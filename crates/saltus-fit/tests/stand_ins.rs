@@ -165,7 +165,9 @@ proptest! {
             };
             format!("{ball}\n{}", table(header, (0..6).map(row)))
         };
-        let report = fit(&text(&|_| 1.0));
+        // No ball keeps a factor to the last digit.
+        let kept = |n: i32| 1.0 + 3e-4 * f64::from(n).sin();
+        let report = fit(&text(&kept));
         prop_assert!((report.cor().unwrap().value - e).abs() < 4e-3, "{}", report);
         prop_assert_eq!(report.verdict(), Verdict::Trusted, "{}", report);
         let scatter = off.iter().cloned().fold(0.0, f64::max) / off.iter().cloned().fold(1.0, f64::min);
@@ -173,9 +175,9 @@ proptest! {
             let verdict = Fit::new().run(&table).map(|report| report.verdict());
             prop_assert!(verdict != Ok(Verdict::Trusted), "{:?}", off);
         }
-        let players = text(&|_| 1.0).replacen('\n', " players zorb\n", 1);
+        let players = text(&kept).replacen('\n', " players zorb\n", 1);
         prop_assert!(fit(&players).reason().contains("something bounces"), "{}", players);
-        let report = fit(&format!("Collision\n{}", text(&|_| 1.0)));
+        let report = fit(&format!("Collision\n{}", text(&kept)));
         prop_assert!(report.reason().contains("something bounces"), "{}", report);
     }
 

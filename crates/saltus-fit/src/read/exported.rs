@@ -137,12 +137,15 @@ fn counted(text: &str) -> Option<String> {
     (rows.len() >= SAMPLES).then(|| format!("time (s)\t{}\n\n{}\n", sizes.join("\t"), rows.join("\n")))
 }
 
+/// The line that a section begins at, its name, and its names with their values.
+type Section = (usize, String, Vec<(String, String)>);
+
 /// Sections in brackets with a name and a number a line, `[run1]`, `drop_mm = 150`, `t1 = 812.0`,
 /// as a row each below their names; remarks begin with a semicolon. `None` where there are no two,
 /// and where a line is none of it.
 pub(super) fn sections(text: &str) -> Option<String> {
     let section = |line: &'_ str| line.strip_prefix('[')?.strip_suffix(']').map(|name| name.trim().to_owned());
-    let mut rows: Vec<(usize, String, Vec<(String, String)>)> = Vec::new();
+    let mut rows: Vec<Section> = Vec::new();
     let mut names: Vec<String> = Vec::new();
     for (n, line) in text.lines().map(str::trim).enumerate() {
         if line.is_empty() || line.starts_with([';', '#']) {
@@ -164,7 +167,7 @@ pub(super) fn sections(text: &str) -> Option<String> {
     }
     let first = rows.first()?.0;
     let header = format!("run\t{}\r", names.join("\t"));
-    let row = |(n, name, cells): &(usize, String, Vec<(String, String)>)| {
+    let row = |(n, name, cells): &Section| {
         let cell = |name: &String| cells.iter().find(|(own, _)| own == name).map_or("", |(_, value)| value.as_str());
         let cells = names.iter().map(cell).collect::<Vec<_>>().join("\t");
         format!("{}{name}\t{cells}", if *n == first { header.as_str() } else { "" })

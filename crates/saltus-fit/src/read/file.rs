@@ -6,7 +6,7 @@ use std::borrow::Cow;
 use super::alarms;
 use super::aside::{LeftAside, Part as Kind, Why};
 use super::clause;
-use super::columns::Columns;
+use super::columns::{Column, Columns, Kind as Of};
 use super::datum::Datum;
 use super::digits;
 use super::foreign;
@@ -260,7 +260,11 @@ fn bounces(region: &mut Region<'_>, options: &ReadOptions, metadata: Metadata) -
     table.metadata.ratios = columns.of_ratios();
     table.metadata.speeds = columns.of_speeds();
     table.doubts.extend(doubts.into_iter().flatten().chain(columns.doubts).chain(check::copied(&table.trials)));
-    table.doubts.extend(computed::doubt(&table));
+    // What stands for a height, a part or an energy, has a factor of its own.
+    let stands = |c: &Column| matches!(c.kind, Of::Share | Of::Lost) || c.heading.energy.is_some();
+    if !columns.columns.iter().any(stands) {
+        table.doubts.extend(computed::doubt(&table));
+    }
     Ok(table)
 }
 
