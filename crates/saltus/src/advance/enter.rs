@@ -106,7 +106,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
 
     /// The state with each coordinate moved by a millionth of what it is made of.
     #[inline]
-    fn nudged(&self, x: &A::State) -> A::State {
+    pub(super) fn nudged(&self, x: &A::State) -> A::State {
         x.with(|i| x.get(i) + TINY * weight(i) * self.size(x, i))
     }
 
@@ -114,18 +114,17 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// one that is `nudged`. If not, rounding alone may have left it.
     #[inline]
     fn look_near(&mut self, edge: A::Edge, t: f64, x: &A::State, nudged: &A::State, g: f64) {
-        self.memory.stats.guards += 1;
-        if g <= (self.guard(edge, t + FAR * self.tick(t), nudged) - g).abs() {
+        if !self.is_clear(edge, t, nudged, g) {
             self.find_wall(edge, t, x, g);
         }
     }
 
-    /// Whether a guard `g` above zero is clear of it, as [`Self::look_near`] finds.
+    /// Whether a guard `g` above zero moves by less than that, between a state and the one that is
+    /// `nudged`.
     #[inline]
-    pub(super) fn clear_at_glance(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) -> bool {
-        let nudged = self.nudged(x);
+    pub(super) fn is_clear(&mut self, edge: A::Edge, t: f64, nudged: &A::State, g: f64) -> bool {
         self.memory.stats.guards += 1;
-        g > (self.guard(edge, t + FAR * self.tick(t), &nudged) - g).abs()
+        g > (self.guard(edge, t + FAR * self.tick(t), nudged) - g).abs()
     }
 
     /// The state is at a wall if rounding alone may have left its guard `g`.

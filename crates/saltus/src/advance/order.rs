@@ -62,17 +62,17 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         (y, time): (&A::State, Time),
     ) -> Option<A::Edge> {
         let t = time.seconds();
-        if !(time.since(now) > SURELY * f64::EPSILON * t.abs()) {
+        if time.since(now) <= SURELY * f64::EPSILON * t.abs() {
             return None;
         }
-        let mut sizes = None;
+        let (nudged, mut sizes) = (self.nudged(y), None);
         for edge in self.automaton.edges(mode).iter() {
             if self.memory.spent_as(edge).is_some() {
                 continue;
             }
             self.memory.stats.guards += 1;
             let g = self.guard(edge, t, y);
-            if g < 0.0 || self.clear_at_glance(edge, t, y, g) || self.guard(edge, now.seconds(), x) <= 0.0 {
+            if g < 0.0 || self.is_clear(edge, t, &nudged, g) || self.guard(edge, now.seconds(), x) <= 0.0 {
                 continue;
             }
             let sizes = sizes.get_or_insert_with(|| {

@@ -46,7 +46,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     #[inline(never)]
     fn promised(&mut self, mode: A::Mode, times: [f64; 2], ends: [&A::State; 2]) -> Result<(), Error> {
         let ([began, _], [x, _]) = (times, ends);
-        if !self.options.stepped && !(self.solves(mode, began, x) && self.goes_on(mode, times, x)) {
+        if !(self.options.stepped || self.solves(mode, began, x) && self.goes_on(mode, times, x)) {
             return Err(Error::new(ErrorKind::Series, Place::new(began, mode, None::<A::Edge>, x)));
         }
         self.hold(mode, times, ends)
