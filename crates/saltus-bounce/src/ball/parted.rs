@@ -57,10 +57,10 @@ impl<R: Restitution> Automaton for Ball<QuadraticDragFlight, R> {
     #[inline]
     fn flow(&self, phase: Phase, _t: f64, x: &Vector2<f64>) -> Vector2<f64> {
         match phase {
-            // Each goes on smoothly past the apex, so that a step that ends beyond it is no shorter
-            // for that.
-            Phase::Rising => vector![x[1], self.flight.one_way(x[1], true)],
-            Phase::Falling => vector![x[1], self.flight.one_way(x[1], false)],
+            // Smooth past the apex, so that a step that ends beyond it is no shorter for that.
+            Phase::Rising => vector![x[1], self.flight.rising(x[1])],
+            // A ball thrown upwards that is called falling rises first.
+            Phase::Falling => vector![x[1], self.flight.acceleration(x[1])],
             Phase::Rest => vector![0.0, 0.0],
         }
     }

@@ -58,12 +58,10 @@ impl QuadraticDragFlight {
         Ok(Self { gravity, drag, rate: gravity.sqrt() * drag.sqrt(), share, length: 0.5 / drag })
     }
 
-    /// The acceleration with drag downwards, as on the way up, or upwards, as on the way down,
-    /// whatever the sign of the velocity.
+    /// The acceleration with drag downwards, as on the way up, whatever the sign of the velocity.
     #[inline]
-    pub(crate) fn one_way(&self, velocity: f64, rising: bool) -> f64 {
-        let drag = self.drag * velocity * velocity;
-        -self.gravity - if rising { drag } else { -drag }
+    pub(crate) fn rising(&self, velocity: f64) -> f64 {
+        -self.gravity - self.drag * velocity * velocity
     }
 
     /// The rise within `s` seconds from `v` upwards, at most until the apex, and the velocity then.

@@ -3,6 +3,7 @@
 
 use super::cell::{self, Cell};
 use super::clause::clauses;
+use super::end::{End, names_end, point};
 use super::grid::shown;
 use super::phrases::{Phrase, denies};
 use super::units::{Dimension, Unit};
@@ -82,14 +83,6 @@ impl Datum {
     }
 }
 
-/// A point of the ball that heights are read at.
-#[derive(Clone, Copy, PartialEq)]
-enum End {
-    Bottom,
-    Middle,
-    Top,
-}
-
 /// Which heights a line speaks of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Of {
@@ -138,24 +131,6 @@ fn of_names<'a>(names: &[Line<'a>]) -> Vec<(End, Of, Line<'a>)> {
     let released = found.iter().any(|(end, of, _)| *end != End::Bottom && *of == Of::Releases);
     found.retain(|(end, _, (_, clause))| released || *end == End::Bottom || !names_end(clause));
     found
-}
-
-/// Whether a text is the end of a ball and nothing else: `top`, `lower edge`.
-pub(super) fn names_end(text: &str) -> bool {
-    let words = split(text);
-    let silent = |word: &Word| word.is(Atom::Filler) && !word.is(Atom::Bottom);
-    let end = words.iter().filter(|word| point(word).is_some()).count();
-    end == 1 && words.iter().all(|word| point(word).is_some() || silent(word))
-}
-
-/// The end of a ball that a word names.
-fn point(word: &Word) -> Option<End> {
-    match &*folded(&word.text) {
-        _ if word.is(Atom::Bottom) => Some(End::Bottom),
-        text if Phrase::Top.is(text) => Some(End::Top),
-        text if Phrase::Middle.is(text) => Some(End::Middle),
-        _ => None,
-    }
 }
 
 /// The ends of the ball that a line names, and of which heights: what a clause of it says of these

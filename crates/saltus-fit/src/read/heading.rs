@@ -10,7 +10,7 @@ mod repeats;
 mod signs;
 
 use super::aside::Why;
-use super::datum::names_end;
+use super::end::names_end;
 use super::units::{Dimension, Scale, Unit};
 use super::vocabulary::{Atom, folded, misspelt, narrow, short_for};
 use super::words::{Kind, Word, numbers, split, unaddressed};

@@ -14,6 +14,7 @@ mod datum;
 mod digits;
 mod drops;
 mod encoding;
+mod end;
 mod exported;
 mod file;
 mod filed;

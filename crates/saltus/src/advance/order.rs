@@ -35,8 +35,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         if time.since(now) <= SURELY * f64::EPSILON * t.abs() {
             return ArcEnd::Crossing { edge: last, time, before };
         }
-        let reach = self.reach_of(mode, [now.seconds(), t], [x, &before]);
-        let sizes = reach.with(|i| reach.get(i).max(self.size(x, i)));
+        let sizes = self.summed_from(mode, (x, now), (&before, time));
         let listed = self.automaton.edges(mode);
         for edge in listed.iter().take_while(|&edge| edge != last).filter(|edge| tied.contains(edge)) {
             self.memory.stats.guards += 2;
@@ -44,7 +43,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 continue;
             }
             let g = self.guard(edge, t, &before);
-            if g.abs() <= FEW * self.rounding(edge, t, &before, g, &sizes) {
+            if self.is_zero(edge, (t, &before), g, &sizes).is_some() {
                 (self.memory.slack, self.memory.leapt) = (FEW * g.abs(), false);
                 return ArcEnd::Crossing { edge, time, before };
             }
@@ -75,16 +74,34 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             if g < 0.0 || self.is_clear(edge, t, &nudged, g) || self.guard(edge, now.seconds(), x) <= 0.0 {
                 continue;
             }
-            let sizes = sizes.get_or_insert_with(|| {
-                let reach = self.reach_of(mode, [now.seconds(), t], [x, y]);
-                reach.with(|i| reach.get(i).max(self.size(x, i)))
-            });
-            let rounding = self.rounding(edge, t, y, g, sizes);
-            if g <= FEW * rounding && self.falls_on_from(mode, edge, t, y, (g, rounding)) {
+            let sizes = sizes.get_or_insert_with(|| self.summed_from(mode, (x, now), (y, time)));
+            let Some(rounding) = self.is_zero(edge, (t, y), g, sizes) else { continue };
+            if self.falls_on_from(mode, edge, t, y, (g, rounding)) {
                 (self.memory.slack, self.memory.leapt) = (FEW * g, false);
                 return Some(edge);
             }
         }
         None
+    }
+
+    /// What the coordinates at the end of an arc were summed up from, on it and before.
+    fn summed_from(&self, mode: A::Mode, (x, now): (&A::State, Time), (y, time): (&A::State, Time)) -> A::State {
+        let reach = self.reach_of(mode, [now.seconds(), time.seconds()], [x, y]);
+        reach.with(|i| reach.get(i).max(self.size(x, i)))
+    }
+
+    /// The rounding of a guard `g`, where that alone keeps it from zero: by its slopes, and by what
+    /// some roundings of its coordinates and of time move it by. Slopes are taken over more than
+    /// that, beyond roots that are near each other.
+    fn is_zero(&mut self, edge: A::Edge, (t, x): (f64, &A::State), g: f64, sizes: &A::State) -> Option<f64> {
+        let rounding = self.rounding(edge, t, x, g, sizes);
+        if g.abs() > FEW * rounding {
+            return None;
+        }
+        let by = SURELY * f64::EPSILON;
+        let later = self.guard(edge, t + SURELY * self.tick(t), x) - g;
+        let moved = self.moved(edge, t, x, g, &|i| by * sizes.get(i)) + later.abs();
+        self.memory.stats.guards += 1;
+        (g.abs() <= moved).then_some(rounding)
     }
 }
