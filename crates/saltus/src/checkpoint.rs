@@ -43,7 +43,7 @@ pub struct Checkpoint<M, E, S> {
     #[cfg_attr(not(feature = "serde"), allow(dead_code))] // what is written and read
     format: Format,
     pub(crate) at: Stage<M, E, S>,
-    pub(crate) memory: Memory<E, S>,
+    pub(crate) memory: Memory<M, E, S>,
 }
 
 /// Where a run stands, without what the search for crossings remembers.
@@ -74,7 +74,7 @@ mod format {
     use super::Format;
     use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 
-    const NUMBER: u32 = 19;
+    const NUMBER: u32 = 20;
 
     impl Serialize for Format {
         fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -122,7 +122,7 @@ impl<M: Copy + PartialEq + fmt::Debug, E: Copy + PartialEq, S: State> Stage<M, E
 }
 
 impl<M, E, S> Checkpoint<M, E, S> {
-    pub(crate) const fn new(at: Stage<M, E, S>, memory: Memory<E, S>) -> Self {
+    pub(crate) const fn new(at: Stage<M, E, S>, memory: Memory<M, E, S>) -> Self {
         Self { format: Format, at, memory }
     }
 

@@ -351,7 +351,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
             }
         }
         arc.jumped((mode, &x, began.seconds()), (edge, &before, now), (!at_once).then_some(duration));
-        arc.landed(edge, &before, (to, now, &after));
+        arc.landed((mode, edge, &before), (to, now, &after));
         at.recent.push(edge);
         let elapsed = time.since(at.span.start);
         let (lapse, short) = if at_once { (0.0, true) } else { (duration, arc.memory.is_short(duration)) };

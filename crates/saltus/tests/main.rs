@@ -9,6 +9,7 @@ use saltus_instances as _;
 mod methods;
 
 // Where a guard falls, and where it does not.
+mod anew;
 mod at_ends;
 mod clocks;
 mod domain;

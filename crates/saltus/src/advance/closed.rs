@@ -48,7 +48,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
         let close = match &first {
             Some(first) => {
-                self.memory.slope = Some(automaton.flow(mode, t, x));
+                let (duration, slope) = (first.crossing.root, automaton.flow(mode, t, x));
+                self.memory.reach = Some(slope.with(|i| duration * slope.get(i)));
                 self.close_on_solution(first, now, at, remaining)
             }
             None => Close { span: remaining, time: clock.end, state: at(remaining.min(LAST)) },

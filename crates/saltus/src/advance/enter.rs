@@ -13,6 +13,7 @@ use crate::state::State;
 use crate::step::Stepper;
 use crate::time::Time;
 
+use super::memory::Left;
 #[cfg(feature = "num-dual")]
 use super::memory::Spent;
 use super::shared::Step;
@@ -130,6 +131,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// The state is at a wall if rounding alone may have left its guard `g`.
     #[cold]
     fn find_wall(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) {
+        self.renew(edge, t, x, g);
         if g <= ROUNDINGS * self.still(edge, t, x, g) {
             self.memory.at_wall(edge, g);
         }
@@ -156,6 +158,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             }
             return Ok(false);
         }
+        self.renew(edge, t, x, g);
         let still = self.entry_error(edge, t, x, g);
         let Leaving { slope, straight } = self.leaving(mode, edge, t, x, g, still);
         // A flow that is no number here says nothing.
@@ -188,10 +191,39 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
     }
 
-    /// After the jump by `edge` from `before` to `after` in mode `to`: a guard that leapt there has
-    /// no root to be spent, unless it leaps there still.
+    /// Where the roundings of what the coordinates of `x` were before the last jump decide whether
+    /// a guard `g` is zero: what its reset makes of them.
+    ///
+    /// Moved by a part of what it was summed up from, a coordinate that the reset gives anew stays
+    /// as it is, and one that it keeps moves with it.
+    fn renew(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) {
+        let is_zero = |rounding: f64| g.abs() <= ROUNDINGS * rounding;
+        let (Some(last), true) = (self.memory.last, self.memory.left.is_some()) else { return };
+        if !is_zero(self.still(edge, t, x, g)) || is_zero(self.rounding(edge, t, x, g, x)) {
+            return;
+        }
+        let Some(Left { from, before, to }) = self.memory.left.take() else { return };
+        let reset = |t: f64, y: &A::State| {
+            let (mode, after) = self.automaton.reset(from, last, t, y).ok()?;
+            (mode == to && after.len() == x.len() && after.is_finite()).then_some(after)
+        };
+        let by_time = FAR * self.tick(t);
+        let (Some(moved), Some(later)) = (reset(t, &self.nudged(&before)), reset(t + by_time, &before)) else { return };
+        self.memory.largest = Some(x.with(|i| {
+            let by = |after: &A::State, part: f64| (after.get(i) - x.get(i)).abs() / part;
+            x.get(i).abs().max(by(&moved, TINY)).max(by(&later, FAR * f64::EPSILON))
+        }));
+    }
+
+    /// After the jump by `edge` from `before` in mode `from` to `after` in mode `to`: a guard that
+    /// leapt there has no root to be spent, unless it leaps there still.
     #[inline]
-    pub(crate) fn landed(&mut self, edge: A::Edge, before: &A::State, (to, t, after): (A::Mode, f64, &A::State)) {
+    pub(crate) fn landed(
+        &mut self,
+        (from, edge, before): (A::Mode, A::Edge, &A::State),
+        (to, t, after): (A::Mode, f64, &A::State),
+    ) {
+        self.memory.left = self.memory.shrinks(after).then(|| Left { from, before: before.clone(), to });
         if mem::take(&mut self.memory.leapt) {
             let (before, after) = (before.clone(), after.clone()); // else both would be kept in memory
             self.has_leapt(edge, &before, (to, t, &after));

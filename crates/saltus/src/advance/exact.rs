@@ -54,7 +54,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
         let close = match &first {
             Some(first) => {
-                self.memory.slope = c.get(1).cloned();
+                let duration = first.crossing.root;
+                self.memory.reach = c.get(1).map(|slope| slope.with(|i| duration * slope.get(i)));
                 self.close_on_solution(first, now, at, remaining)
             }
             None => {

@@ -56,15 +56,17 @@ pub(super) type Few<T> = SmallVec<[T; FEW_EDGES]>;
 /// What is kept from arc to arc.
 #[derive(Clone)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct Memory<E, S> {
+pub(crate) struct Memory<M, E, S> {
     pub(crate) stats: Stats,
     /// What each coordinate was summed up from, over the arcs so far that took time, since it was
-    /// last exactly zero: the largest of |xᵢ| at the start of an arc and of |xᵢ'| times its
-    /// duration.
+    /// last exactly zero: the largest of |xᵢ| at the start of an arc and of its `reach`.
     pub(super) largest: Option<S>,
-    /// How fast each coordinate changes over an arc that ends at a crossing: by x' at its start,
-    /// and by what the coordinate was as the last piece began.
-    pub(super) slope: Option<S>,
+    /// What each coordinate was summed up from on the arc so far: the largest, over its pieces, of
+    /// |xᵢ| at their start and of |xᵢ'| there times how long they last.
+    pub(super) reach: Option<S>,
+    /// The last jump, where it left a coordinate far smaller than what that was summed up from
+    /// before.
+    pub(super) left: Option<Left<M, S>>,
     pub(super) controller: Controller,
     pub(super) gait: Gait,
     pub(super) step: Option<f64>,
@@ -108,6 +110,15 @@ pub(crate) struct Memory<E, S> {
     pub(crate) spurious: bool,
 }
 
+/// A jump from the state `before` in the mode `from` to the mode `to`.
+#[derive(Clone)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Left<M, S> {
+    pub(super) from: M,
+    pub(super) before: S,
+    pub(super) to: M,
+}
+
 /// What a jump has left as it was, so that it gave no guard a cause to fall that had fallen.
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[derive(Clone, Copy)]
@@ -118,13 +129,14 @@ pub(crate) enum Kept {
     State,
 }
 
-impl<E: Copy + PartialEq, S: State> Memory<E, S> {
+impl<M, E: Copy + PartialEq, S: State> Memory<M, E, S> {
     #[inline(always)]
     pub(crate) fn new(stepper: &impl Stepper, first_step: Option<f64>) -> Self {
         Self {
             stats: Stats::default(),
             largest: None,
-            slope: None,
+            reach: None,
+            left: None,
             controller: Controller::new(stepper),
             gait: Gait::START,
             step: first_step,
@@ -178,29 +190,38 @@ impl<E: Copy + PartialEq, S: State> Memory<E, S> {
         self.step = self.step.map(|step| step.min(longest));
     }
 
-    /// An arc ends that began with this `slope`, and lasted so long `before` its last piece, which
-    /// began at `x`, and `after`: what a coordinate was there it was summed up from as well.
+    /// A piece of the arc from `x` lasted so long that each coordinate changed `by` so much, if it
+    /// went on as at its start. What is within a factor of two of what there was is left.
     #[inline]
-    pub(super) fn set_out(&mut self, slope: Option<S>, (before, after): (f64, f64), x: &S) {
-        self.slope = match slope {
-            Some(slope) if before > 0.0 => {
-                Some(slope.with(|i| larger(slope.get(i).abs(), x.get(i).abs() / (before + after))))
-            }
-            slope => slope,
+    pub(super) fn reaches(&mut self, x: &S, by: impl Fn(usize) -> f64) {
+        let here = |i: usize| larger(x.get(i).abs(), by(i).abs());
+        self.reach = match self.reach.take() {
+            Some(reach) if (0..x.len()).all(|i| here(i) <= 2.0 * reach.get(i)) => Some(reach),
+            Some(reach) => Some(x.with(|i| larger(reach.get(i), here(i)))),
+            None => Some(x.with(here)),
         };
     }
 
     /// An arc from `x` that took time has ended.
     #[inline(always)]
-    pub(super) fn went(&mut self, x: &S, duration: f64) {
+    pub(super) fn went(&mut self, x: &S) {
         let alike = |y: &S| y.len() == x.len();
-        let (largest, slope) = (self.largest.take().filter(alike), self.slope.take().filter(alike));
+        let (largest, reach) = (self.largest.take().filter(alike), self.reach.take().filter(alike));
         self.largest = Some(x.with(|i| {
             let here = x.get(i).abs();
             let before = largest.as_ref().map_or(0.0, |largest| if here == 0.0 { 0.0 } else { largest.get(i) });
-            let way = slope.as_ref().map_or(0.0, |slope| (slope.get(i) * duration).abs());
+            let way = reach.as_ref().map_or(0.0, |reach| reach.get(i).abs());
             larger(larger(here, before), way)
         }));
+    }
+
+    /// Whether a jump to `after` leaves a coordinate far smaller than what that was summed up from
+    /// before, and not exactly zero.
+    #[inline]
+    pub(super) fn shrinks(&self, after: &S) -> bool {
+        let small = |x: f64, largest: f64| x != 0.0 && x.abs() < SMALL * largest;
+        let Some(largest) = self.largest.as_ref().filter(|largest| largest.len() == after.len()) else { return false };
+        (0..after.len()).any(|i| small(after.get(i), largest.get(i)))
     }
 
     /// Whether an arc is so short beside the longest one that rounding may show in what guards do
@@ -228,7 +249,7 @@ impl<E: Copy + PartialEq, S: State> Memory<E, S> {
 
     /// After a jump that no edge made.
     pub(crate) fn beyond(&mut self) {
-        (self.spent, self.last) = (None, None);
+        (self.spent, self.last, self.left) = (None, None, None);
     }
 }
 

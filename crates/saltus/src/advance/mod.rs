@@ -78,10 +78,9 @@ pub(crate) struct Advance<'a, A: Automaton, M> {
     pub(crate) automaton: &'a A,
     pub(crate) stepper: M,
     pub(crate) options: Options,
-    pub(crate) memory: Memory<A::Edge, A::State>,
-    /// When the arc began, and x' there.
+    pub(crate) memory: Memory<A::Mode, A::Edge, A::State>,
+    /// When the arc began.
     began: Time,
-    set_out: Option<A::State>,
     tape: Tape,
     held: Held<A>,
     /// An edge that has stayed at its wall on this arc, where all that its guard reads is below
@@ -97,7 +96,12 @@ pub(crate) struct Advance<'a, A: Automaton, M> {
 
 impl<'a, A: Automaton, M> Advance<'a, A, M> {
     #[inline(always)]
-    pub(crate) fn new(automaton: &'a A, stepper: M, options: Options, memory: Memory<A::Edge, A::State>) -> Self {
+    pub(crate) fn new(
+        automaton: &'a A,
+        stepper: M,
+        options: Options,
+        memory: Memory<A::Mode, A::Edge, A::State>,
+    ) -> Self {
         let (tape, held, smooth) = (Tape::new(), Held::default(), Smooth::ALWAYS);
         Self {
             automaton,
@@ -105,7 +109,6 @@ impl<'a, A: Automaton, M> Advance<'a, A, M> {
             options,
             memory,
             began: Time::new(0.0),
-            set_out: None,
             tape,
             held,
             held_down: None,
@@ -139,7 +142,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             self.falls_on(mode, last, (&x, began), duration.map(|_| (&before, t)));
         }
         if let Some(duration) = duration {
-            self.memory.went(x, duration);
+            self.memory.went(x);
             self.memory.last_duration = duration;
             if duration > self.memory.longest_duration {
                 self.memory.longest_duration = duration;
@@ -208,7 +211,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     #[inline]
     fn sift<T: Copy>(
         &mut self,
-        list: impl Fn(&mut Memory<A::Edge, A::State>) -> &mut Few<T>,
+        list: impl Fn(&mut Memory<A::Mode, A::Edge, A::State>) -> &mut Few<T>,
         mut keep: impl FnMut(&mut Self, &mut T) -> bool,
     ) {
         let mut kept = 0;
@@ -260,7 +263,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     ) -> Result<ArcEnd<A>, Error> {
         let &Span { now, .. } = clock;
         self.memory.steps_before = self.memory.stats.steps;
-        self.memory.kept = None;
+        (self.memory.kept, self.memory.reach) = (None, None);
         self.began = now;
         self.sparsity = None;
         let end = match self.automaton.solution(mode, now.seconds(), x) {

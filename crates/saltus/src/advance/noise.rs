@@ -27,11 +27,11 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         self.moved(edge, t, x, g, &|i| TINY * sizes.get(i).abs()) * (f64::EPSILON / TINY)
     }
 
-    /// What the coordinates of `x` were summed up from: max(|xᵢ|, |xᵢ| at the start of an arc and
-    /// of its last piece, |xᵢ'| times its duration), over the arcs since it was last exactly zero.
+    /// What the coordinates of `x` were summed up from: max(|xᵢ|, |xᵢ| at the start of a piece of
+    /// an arc, |xᵢ'| there times how long it lasts), over the arcs since it was last exactly zero.
     ///
     /// A coordinate that is a rounding of what it was has the rounding of what it was, until a
-    /// reset gives it anew. At the start of a run nothing was summed up: |xᵢ|.
+    /// reset gives it anew (`renew`). At the start of a run nothing was summed up: |xᵢ|.
     #[cold]
     pub(super) fn sizes(&self, x: &A::State) -> A::State {
         x.with(|i| self.size(x, i))
@@ -422,12 +422,14 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                     return false;
                 }
                 let carried = this.carried(mode, edge, t, x, h);
-                if carried != Carried::Along {
-                    this.held_down = this.held_down.filter(|_| carried == Carried::Down);
-                    return false;
-                }
                 this.memory.stats.guards += 1;
                 let g = this.guard(edge, t, x);
+                if carried != Carried::Along {
+                    this.held_down = this.held_down.filter(|_| carried == Carried::Down);
+                    // Below zero by rounding already, it does not fall through zero any more.
+                    wall.falls = carried == Carried::Down && g < 0.0 && this.memory.spent_as(edge).is_none();
+                    return wall.falls;
+                }
                 let allowed = this.within_tolerance(edge, t, x, g);
                 wall.stays = g.abs() <= allowed;
                 wall.falls = g < -allowed && this.memory.spent_as(edge).is_none();

@@ -88,7 +88,6 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             if first {
                 let slope = x.with(|i| c[1].get(i) / unit);
                 self.find_staying(mode, Step { now: clock.now, c, scale: unit, size: ahead.step }, &slope);
-                self.set_out = Some(slope);
             }
             let way = Way { mode, now: clock.now, remaining, grace: clock.grace(), first };
             let Some(Believed { h, found, end }) = self.believed(&way, c, unit, ahead.step)? else {
@@ -111,6 +110,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             if told.is_break() {
                 return Ok(ArcEnd::Stop { stop: Stop::Observer, time: clock.now, state: end });
             }
+            self.memory.reaches(&c[0], |i| h / unit * c[1].get(i));
             self.tape.anew(ahead.kink.filter(|_| h == ahead.step && !at_stop));
             (x, first) = (end, false);
             if at_stop && let Some(edge) = self.pass_stop(mode, clock.now, &x)? {

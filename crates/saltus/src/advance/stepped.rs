@@ -63,9 +63,6 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let which = Some(not_finite(&rate));
             return Err(flow_undefined(self.automaton, mode, clock.now.seconds(), &start, which));
         }
-        if first {
-            self.set_out = Some(rate.clone());
-        }
         // Copies: what others refer to is kept in memory, and waited for at every step.
         let (mut x, mut slope) = (start, rate);
         let unguarded = self.automaton.edges(mode).is_empty();
@@ -84,6 +81,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             if clear {
                 self.memory.walls.clear(); // clear of zero
                 if !at_stop && !observer.wants_pieces() {
+                    self.reached(&x, h, &slope);
                     (clock.now, x, first, slope) = (arrival, trial.end, false, trial.slope);
                     continue;
                 }
@@ -127,6 +125,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             if observer.piece(mode, &Piece::new(clock.now, h, h, step.c)).is_break() {
                 return Ok(ArcEnd::Stop { stop: Stop::Observer, time: arrival, state });
             }
+            self.reached(&x.clone(), h, &slope.clone());
             (clock.now, x, first, slope) = (arrival, state, false, trial.slope);
             if at_stop {
                 if let Some(edge) = self.pass_stop(mode, clock.now, &x.clone())? {
@@ -138,6 +137,14 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 self.keep_staying(mode, clock.now, &x.clone(), h);
             }
         }
+    }
+
+    /// A step of size `h` from `x`, where x' is the `slope`, was taken. One of an implicit method
+    /// is not summed up from that.
+    #[inline]
+    fn reached(&mut self, x: &A::State, h: f64, slope: &A::State) {
+        let h = if self.memory.gait.stiff { 0.0 } else { h };
+        self.memory.reaches(x, |i| h * slope.get(i));
     }
 
     /// The first crossing on a last step that is shorter than the rounding of time: on a line,
@@ -199,8 +206,10 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         remaining: f64,
         observer: &mut impl Observer<A>,
     ) -> ArcEnd<A> {
-        let pieces = (now.since(self.began), found.crossing.root);
-        self.memory.set_out(self.set_out.take(), pieces, &c[0]);
+        if let Some(slope) = c.get(1) {
+            let part = found.crossing.root / scale;
+            self.memory.reaches(&c[0], |i| part * slope.get(i));
+        }
         let close = self.close((found.edge, found.crossing), now, |s| found.at(c, scale, s), remaining, false);
         self.memory.before = slope.map(|slope| (close.state.clone(), slope));
         let told = if close.span > 0.0 {

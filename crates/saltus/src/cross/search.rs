@@ -15,7 +15,7 @@ const DEEPEST: u32 = 64;
 /// Evaluations within one search, after which halving stops.
 const MOST_EVALUATIONS: u32 = 20_000;
 
-/// A rise from a spent start is looked for at so many times, each nearer by the same part, down to
+/// A rise from a root at the start is looked for at so many times, each nearer by the same part, down to
 /// 2⁻³³ of the stretch.
 const LOOKS_BACK: usize = 11;
 
@@ -200,7 +200,9 @@ impl Search<'_> {
             && q.start() < -q_margin
             && (known.is_some() || least < -margin && self.falls_from_start(b, q.start())?)
         {
-            return Ok(Next::Part(Part::AtStart));
+            // The samples may be too far apart to see that the guard rises first.
+            let rises = known.is_none() && self.rises_first(b)?;
+            return Ok(if rises { Next::Halves } else { Next::Part(Part::AtStart) });
         }
         let order = || Some(order(start - base, end - base, a, b));
         Ok(Next::Part(match q.shape(q_margin) {
@@ -292,7 +294,7 @@ impl Search<'_> {
         if stretch.known.is_some() { 0.0 } else { self.base }
     }
 
-    /// Whether the guard is above its spent start anywhere in a row of times that shrink towards
+    /// Whether the guard is above its start, a root, anywhere in a row of times that shrink towards
     /// it.
     fn rises_first(&mut self, b: f64) -> Result<bool, Undefined> {
         let mut s = b;

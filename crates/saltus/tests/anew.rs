@@ -1,0 +1,139 @@
+//! A reset that gives a coordinate anew leaves it no rounding of what it was before; one that keeps
+//! it, or a part of it, does. Nor is a motion that begins on a curved wall judged by the time of
+//! the one before.
+
+use proptest::prelude::*;
+use saltus::{Entry, Hybrid, Signal, Simulation, Stop};
+use saltus_cases::cases;
+
+use crate::methods::methods;
+
+/// From far away down to 10⁶, and there anew at `small` above the wall, which is 20 s away.
+fn dock(speed: f64, small: f64, exact: bool) -> Hybrid<'static, f64> {
+    let model = Hybrid::new()
+        .mode("cruise", move |_t, _x: &f64| -speed)
+        .edge("cruise", "dock", |_t, x| x - 1e6, move |_t, _x| small)
+        .mode("dock", move |_t, _x| -small / 20.0)
+        .switch("dock", "end", |_t, x| *x)
+        .mode("end", |_t, _x| 0.0);
+    if exact { model.exact("dock", move |_t, x| [*x, -small / 20.0].into()) } else { model }
+}
+
+/// x' = -k (x - level) for so long, then down by `by` in 10 s.
+fn settle_and_cool(k: f64, level: f64, by: f64) -> Hybrid<'static, [f64; 2]> {
+    Hybrid::new()
+        .mode("settle", move |_t, x: &[f64; 2]| [-k * (x[0] - level), -1.0])
+        .edge("settle", "cool", |_t, x| x[1], move |_t, x| [x[0], 0.0])
+        .mode("cool", move |_t, _x| [-by / 10.0, 0.0])
+        .switch("cool", "end", move |_t, x| x[0] - (level - by))
+        .mode("end", |_t, _x| [0.0; 2])
+}
+
+/// A puck at the board of a round rink: held for so long, then shot inwards at an `angle` from the
+/// middle, reflected by the board ever after. The last coordinate is what is left of the time.
+fn puck(turn: f64, angle: f64, guard: fn(&[f64; 5]) -> f64) -> Hybrid<'static, [f64; 5]> {
+    let (c, s) = (turn.cos(), turn.sin());
+    let v = [-c * angle.cos() - s * angle.sin(), -s * angle.cos() + c * angle.sin()];
+    Hybrid::new()
+        .mode("held", |_t, _x: &[f64; 5]| [0.0, 0.0, 0.0, 0.0, -1.0])
+        .edge("held", "slides", |_t, x| x[4], move |_t, _x| [c, s, v[0], v[1], 0.0])
+        .mode("slides", |_t, x| [x[2], x[3], 0.0, 0.0, 0.0])
+        .edge(
+            "slides",
+            "slides",
+            move |_t, x| guard(x),
+            |_t, x| {
+                let n = 2.0 * (x[0] * x[2] + x[1] * x[3]) / (x[0] * x[0] + x[1] * x[1]);
+                [x[0], x[1], x[2] - n * x[0], x[3] - n * x[1], 0.0]
+            },
+        )
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(cases(96)))]
+
+    #[test]
+    fn a_coordinate_given_anew_has_roundings_of_its_own(
+        method in 0..4_usize, far in 7.0..13.0_f64, small in 3.0..12.0_f64, exact: bool,
+    ) {
+        let (far, small) = (10_f64.powf(far), 10_f64.powf(-small));
+        let model = dock(far / 1e7, small, exact);
+        let run = Simulation::of(&model).stepper(methods()[method]).run("cruise", far, 0.0..2e7).unwrap();
+        let [first, second] = run.trajectory.jumps() else { panic!("{:?}", run.end) };
+        let after = second.time.since(first.time);
+        // Two times of 10⁷ s, each rounded.
+        prop_assert!((after - 20.0).abs() < 1e-7, "{after} s after the reset");
+    }
+
+    /// An angle that has turned a whole time is what it was, less a turn: the rounding of a turn.
+    #[test]
+    fn a_coordinate_that_is_kept_keeps_its_roundings(
+        method in 0..4_usize, turn in 1e-3..1e3_f64, rate in 0.1..10.0_f64, turns in 5..40_usize,
+    ) {
+        let model = Hybrid::new()
+            .mode("turns", move |_t, _x: &f64| rate)
+            .edge("turns", "turns", move |_t, x| turn - x, move |_t, x| x - turn)
+            .edge("turns", "back", |_t, x| *x, |_t, x| *x)
+            .mode("back", |_t, _x| 0.0);
+        let until = (turns as f64 + 0.5) * turn / rate;
+        let run = Simulation::of(&model).stepper(methods()[method]).run("turns", 0.5 * turn, 0.0..until).unwrap();
+        prop_assert_eq!((run.end.mode, run.end.jumps), ("turns", turns + 1));
+    }
+
+    #[test]
+    fn a_relaxation_leaves_a_coordinate_the_roundings_of_its_size(
+        k in 2.0..9.0_f64, seconds in 3.0..6.0_f64, level in 1.0..1e3_f64, by in -4.0..0.0_f64,
+    ) {
+        let (k, seconds, by) = (10_f64.powf(k), 10_f64.powf(seconds), level * 10_f64.powf(by));
+        let model = settle_and_cool(k, level, by);
+        let run = Simulation::of(&model).run("settle", [0.0, seconds], 0.0..seconds + 100.0).unwrap();
+        let [first, second] = run.trajectory.jumps() else { panic!("{:?}", run.end) };
+        // What the tolerance leaves of the level is a part of the way.
+        let (after, allowed) = (second.time.since(first.time), 10.0 * 1e-4 * level / by);
+        prop_assert!((after - 10.0).abs() < 1e-3 + allowed, "{after} s");
+    }
+
+    #[test]
+    fn a_chord_from_a_curved_wall_ends_at_its_other_end(
+        method in 0..4_usize, held in -1.0..6.0_f64, beyond in 0.5..6.0_f64, turn in 0.0..6.0_f64,
+        angle in -1.2..1.2_f64, guard in 0..3_usize,
+    ) {
+        let guards: [fn(&[f64; 5]) -> f64; 3] = [
+            |x| 1.0 - x[0].hypot(x[1]),
+            |x| 1.0 - x[0] * x[0] - x[1] * x[1],
+            |x| (1.0 - x[0] * x[0] - x[1] * x[1]) / (1.0 + x[0] * x[0] + x[1] * x[1]),
+        ];
+        let (held, chord) = (10_f64.powf(held), 2.0 * angle.cos());
+        let model = puck(turn, angle, guards[guard]);
+        let span = 0.0..held + 10_f64.powf(beyond);
+        let simulation = Simulation::of(&model).stepper(methods()[method]).most_jumps(3);
+        let run = simulation.run("held", [turn.cos(), turn.sin(), 0.0, 0.0, held], span.clone()).unwrap();
+        let due = if span.end - held < chord { 1 } else { 2 };
+        prop_assert!(run.end.jumps >= due, "{:?}", run.end);
+        if let [shot, reflected, ..] = run.trajectory.jumps() {
+            let after = reflected.time.since(shot.time);
+            prop_assert!((after - chord).abs() < 1e-6, "{after} s for {chord} s");
+        }
+    }
+
+    /// Zero but for rounding, on either side, while nothing moves, and then down.
+    #[test]
+    fn an_edge_that_stays_is_taken_where_its_flow_leads_down(
+        level in 1e-3..1e3_f64, spacings in -3..4_i32, stop in 0.5..2.0_f64, method in 0..4_usize, entry in 0..3_usize,
+    ) {
+        let entry = [Entry::Refuse, Entry::Wait, Entry::Fire][entry];
+        let off = f64::from(spacings) * f64::EPSILON * level;
+        let input = Signal::held([(0.0, 0.0), (stop, -level)]).unwrap();
+        let flow = input.clone();
+        let model = Hybrid::new()
+            .mode("rests", move |t, _x: &f64| flow.at(t))
+            .stops("rests", input.stops())
+            .edge("rests", "falls", move |_t, x| x - level, |_t, x| *x)
+            .entry(entry)
+            .mode("falls", |_t, _x| 0.0);
+        let run = Simulation::of(&model).stepper(methods()[method]).run("rests", level + off, 0.0..3.0).unwrap();
+        prop_assert_eq!(run.end.stop, Stop::Time);
+        let [jump] = run.trajectory.jumps() else { panic!("{off:e}, {:?}", run.end) };
+        prop_assert!((jump.t() - stop).abs() < 1e-9, "at {}", jump.t());
+    }
+}
