@@ -75,7 +75,7 @@ proptest! {
             .edge("turns", "turns", move |_t, x| turn - x, move |_t, x| x - turn)
             .edge("turns", "back", |_t, x| *x, |_t, x| *x)
             .mode("back", |_t, _x| 0.0);
-        let until = (turns as f64 + 0.5) * turn / rate;
+        let until = (turns as f64 + 0.75) * turn / rate;
         let run = Simulation::of(&model).stepper(methods()[method]).run("turns", 0.5 * turn, 0.0..until).unwrap();
         prop_assert_eq!((run.end.mode, run.end.jumps), ("turns", turns + 1));
     }
@@ -114,6 +114,31 @@ proptest! {
             let after = reflected.time.since(shot.time);
             prop_assert!((after - chord).abs() < 1e-6, "{after} s for {chord} s");
         }
+    }
+
+    #[test]
+    fn a_toss_from_a_wall_ends_where_it_comes_back(
+        method in 0..4_usize, held in -1.0..6.0_f64, beyond in 0.0..3.0_f64, speed in -2.0..2.0_f64,
+        back in -3.0..1.0_f64, steep in -1.0..3.0_f64, bounded: bool,
+    ) {
+        let [held, speed, back, steep] = [held, speed, back, steep].map(|power| 10_f64.powf(power));
+        let top = 0.25 * speed * back;
+        let guard = move |x: f64| if bounded { (steep * x / top).tanh() } else { (steep.min(8.0) * x / top).exp_m1() };
+        let model = Hybrid::new()
+            .mode("held", |_t, _x: &[f64; 3]| [0.0, 0.0, -1.0])
+            .edge("held", "tossed", |_t, x| x[2], move |_t, _x| [0.0, speed, 0.0])
+            .mode("tossed", move |_t, x| [x[1], -2.0 * speed / back, 0.0])
+            .edge("tossed", "end", move |_t, x| guard(x[0]), |_t, x| *x)
+            .mode("end", |_t, _x| [0.0; 3]);
+        let span = 0.0..held + back * (1.0 + 10_f64.powf(beyond));
+        let run = Simulation::of(&model).stepper(methods()[method]).run("held", [0.0, 0.0, held], span).unwrap();
+        // A guard that the tolerance moves by more than the whole toss may be missed, in a doubt.
+        let [tossed, caught] = run.trajectory.jumps() else {
+            prop_assert!(!bounded && !run.trajectory.doubts().is_empty(), "{:?}", run.end);
+            return Ok(());
+        };
+        let after = caught.time.since(tossed.time);
+        prop_assert!((after / back - 1.0).abs() < 1e-6, "{after} s for {back} s");
     }
 
     /// Zero but for rounding, on either side, while nothing moves, and then down.

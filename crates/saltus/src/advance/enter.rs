@@ -211,7 +211,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         let (Some(moved), Some(later)) = (reset(t, &self.nudged(&before)), reset(t + by_time, &before)) else { return };
         self.memory.largest = Some(x.with(|i| {
             let by = |after: &A::State, part: f64| (after.get(i) - x.get(i)).abs() / part;
-            x.get(i).abs().max(by(&moved, TINY)).max(by(&later, FAR * f64::EPSILON))
+            x.get(i).abs().max(by(&moved, TINY * weight(i))).max(by(&later, FAR * f64::EPSILON))
         }));
     }
 

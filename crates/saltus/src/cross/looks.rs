@@ -50,6 +50,8 @@ impl Search<'_> {
         for (s, value) in samples {
             match walk.to(s, value, self.roughness(s)) {
                 Tread::Falls => return Ok(Look::Steps(Part::Fall { a: walk.last, b: s, near: None })),
+                // Samples may be too far apart to see that the guard rises first.
+                Tread::FallsAtStart if !self.spent && a == 0.0 && self.rises_first(b)? => return Ok(Look::Smooth),
                 Tread::FallsAtStart if !self.spent => return Ok(Look::Steps(Part::AtStart)),
                 _ => {}
             }

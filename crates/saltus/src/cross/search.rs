@@ -214,9 +214,8 @@ impl Search<'_> {
                 // The samples may be too far apart to see that the guard rises first.
                 Side::Wall
                     if leaving
-                        && self.spent
                         && known.is_none()
-                        && (q.start() > -FAR * sampled || self.rises_first(b)?) =>
+                        && (self.spent && q.start() > -FAR * sampled || self.rises_first(b)?) =>
                 {
                     return Ok(Next::Halves);
                 }
@@ -296,7 +295,7 @@ impl Search<'_> {
 
     /// Whether the guard is above its start, a root, anywhere in a row of times that shrink towards
     /// it.
-    fn rises_first(&mut self, b: f64) -> Result<bool, Undefined> {
+    pub(super) fn rises_first(&mut self, b: f64) -> Result<bool, Undefined> {
         let mut s = b;
         for _ in 0..LOOKS_BACK {
             s *= ROUGHLY;
