@@ -1,8 +1,10 @@
 //! Where jumps accumulate: the two tanks of the textbooks, and what the rounding of coordinates
 //! makes of a limit.
 
+use proptest::prelude::*;
 use saltus::nalgebra::{Vector2, vector};
 use saltus::{Cause, Hybrid, Simulation, Stop};
+use saltus_cases::cases;
 
 /// Inflow and leaks, marks and volumes at the start.
 type Case = (f64, [f64; 2], [f64; 2], [f64; 2]);
@@ -107,4 +109,43 @@ fn no_ball_is_lost_at_the_end_of_a_chatter() {
         }
     }
     assert!(limits > 450, "{limits} of 600");
+}
+
+/// A ball on a floor so high up that rounding hides its flights, whose rebound is a function of the
+/// speed of impact.
+fn hidden<'a>(floor: f64, rebound: impl Fn(f64) -> f64 + Send + Sync + 'a) -> Hybrid<'a, [f64; 2]> {
+    Hybrid::new()
+        .mode("fly", |_t, x: &[f64; 2]| [x[1], -9.81])
+        .edge("fly", "fly", move |_t, x| x[0] - floor, move |_t, x| [floor, rebound(-x[1])])
+        .affine()
+        .mode("rest", |_t, _x| [0.0; 2])
+        .beyond("fly", "rest", move |_t, _x| [floor, 0.0])
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(cases(64)))]
+
+    /// v (1 - (v/c)ᵖ) rests late, v/(1 + v/c) never: the last ratio bounds neither.
+    #[test]
+    fn ratios_that_rise_to_one_certify_no_limit(
+        floor in 1.5..4.0_f64, power in 0.2..1.0_f64, loss in 0.1..0.6_f64, harmonic: bool, drop in 0.02..2.0_f64,
+    ) {
+        let floor = 10_f64.powf(floor);
+        let loses = move |v: f64| if harmonic { v / (1.0 + v / loss) } else { v * (1.0 - loss * v.min(1.0).powf(power)) };
+        let ball = hidden(floor, loses);
+        let run = Simulation::of(&ball).most_jumps(20_000).run("fly", [floor + drop, 0.0], 0.0..100.0);
+        let Ok(run) = run else { return Ok(()) };
+        prop_assert_eq!(run.end.limits.count, run.end.limits.uncertified, "{:?}", run.end);
+    }
+
+    #[test]
+    fn ratios_that_stay_certify_their_limit(
+        floor in 1.5..4.0_f64, cor in 0.1..0.97_f64, drop in 0.02..2.0_f64, fast in 0.0..0.05_f64,
+    ) {
+        let floor = 10_f64.powf(floor);
+        // Faster impacts lose some more.
+        let ball = hidden(floor, move |v| v * cor / (1.0 + fast * v));
+        let run = Simulation::of(&ball).most_jumps(20_000).run("fly", [floor + drop, 0.0], 0.0..1000.0).unwrap();
+        prop_assert_eq!((run.end.limits.count, run.end.limits.uncertified), (1, 0), "{:?}", run.end);
+    }
 }

@@ -70,11 +70,8 @@ struct Crossed<A: Automaton> {
 /// What comes after an arc and the jump at its end.
 enum Next<A: Automaton> {
     Arc,
-    /// Infinitely many jumps up to a limit `ahead`; not `certified` where rounding hides whether.
-    Limit {
-        ahead: Ahead,
-        certified: bool,
-    },
+    /// Infinitely many jumps up to a limit ahead.
+    Limit(Ahead),
     Stop(Stop<A::Edge>),
 }
 
@@ -212,11 +209,11 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         Ok(match self.arc_and_jump(stand, observer)? {
             Next::Arc => None,
             Next::Stop(stop) => Some(stop),
-            Next::Limit { ahead, certified } => {
+            Next::Limit(ahead) => {
                 if let Some(stop) = self.stopped() {
                     return Ok(Some(stop));
                 }
-                let stop = self.at_limit(ahead, certified, observer)?;
+                let stop = self.at_limit(ahead, observer)?;
                 *stand = self.stand();
                 stop.or_else(|| self.stopped())
             }
@@ -286,8 +283,8 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
             let (at, Crossed { edge, time, before, .. }) = (&mut self.at, crossed);
             (at.span.now, at.state) = (time, before);
             at.recent.push(edge);
-            let certified = at.contraction.limit(time.since(at.span.start), true).is_some();
-            return Ok(Next::Limit { ahead: Ahead::NOW, certified });
+            let ahead = at.contraction.limit(time.since(at.span.start), true);
+            return Ok(Next::Limit(Ahead::now(ahead.is_some_and(|ahead| ahead.certified))));
         }
         self.jump(&mut stand, crossed, observer)
     }
@@ -356,9 +353,10 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         let elapsed = time.since(at.span.start);
         let (lapse, short) = if at_once { (0.0, true) } else { (duration, arc.memory.is_short(duration)) };
         at.contraction.push(lapse, short, &at.state);
-        let limit = if stands { Some(Ahead::NOW) } else { at.contraction.limit(elapsed, arc.memory.hides_durations()) };
+        let limit =
+            if stands { Some(Ahead::now(true)) } else { at.contraction.limit(elapsed, arc.memory.hides_durations()) };
         if let Some(ahead) = limit.filter(|ahead| time.after(ahead.remaining).seconds() <= at.span.end.seconds()) {
-            return Ok(Next::Limit { ahead, certified: true });
+            return Ok(Next::Limit(ahead));
         }
         let next = self.after_jump(edge, now, at_once);
         if matches!(next, Next::Arc) {
@@ -409,7 +407,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         let Self { arc: Advance { automaton, options, .. }, at } = self;
         let beyond = |edges: &[A::Edge]| automaton.beyond(&Limit::new(at.mode, edges, t, &at.state));
         if at.cascade.contracts(options.longest_cascade) && at.recent.cycle().with(beyond).is_some() {
-            Some(Next::Limit { ahead: Ahead::NOW, certified: true })
+            Some(Next::Limit(Ahead::now(true)))
         } else {
             (at.cascade.jumps() >= options.longest_cascade).then_some(Next::Stop(Stop::Cascade { edge }))
         }
@@ -418,12 +416,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
     /// Jumps have accumulated: the state goes on to their limit, or stands for a time too short to
     /// resolve, and the model says what lies beyond.
     #[cold]
-    fn at_limit(
-        &mut self,
-        ahead: Ahead,
-        certified: bool,
-        observer: &mut impl Observer<A>,
-    ) -> Result<Option<Stop<A::Edge>>, Error> {
+    fn at_limit(&mut self, ahead: Ahead, observer: &mut impl Observer<A>) -> Result<Option<Stop<A::Edge>>, Error> {
         let Self { arc, at } = self;
         let automaton = arc.automaton;
         let (mode, last, remaining) = (at.mode, at.state.clone(), ahead.remaining);
@@ -439,7 +432,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         let limit = at.span.now.seconds();
         let beyond = |edges: &[A::Edge]| automaton.beyond(&Limit::new(mode, edges, limit, &x));
         let Some((to, after)) = at.recent.cycle().with(beyond) else {
-            return Ok(Some(if certified { Stop::Zeno { limit } } else { Stop::Resolution { limit } }));
+            return Ok(Some(if ahead.certified { Stop::Zeno { limit } } else { Stop::Resolution { limit } }));
         };
         if !after.is_finite() || automaton.validate(to, limit, &after).is_err() {
             let (kind, note) = wrong(automaton, to, limit, after.clone());
@@ -448,7 +441,7 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
         }
         at.instant = at.span.now;
         let Limits { count, uncertified, .. } = at.limits;
-        let uncertified = uncertified + usize::from(!certified);
+        let uncertified = uncertified + usize::from(!ahead.certified);
         at.limits = Limits { count: count + 1, uncertified, last: Some(limit) };
         let jump = Jump { time: at.instant, j: at.jumps + 1, cause: Cause::Zeno, from: mode, before: x, to, after };
         (at.mode, at.state, at.jumps) = (to, jump.after.clone(), jump.j);

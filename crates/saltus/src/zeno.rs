@@ -2,7 +2,7 @@
 
 use std::array;
 
-use crate::certainty::{FAR, ROUNDINGS, SMALL, TINY};
+use crate::certainty::{FAR, FEW, ROUGHLY, ROUNDINGS, SMALL, TINY};
 use crate::state::State;
 use crate::time::resolution;
 
@@ -13,6 +13,9 @@ const LONGEST_CYCLE: usize = 8;
 
 /// How many jumps are the first ones of a cascade: four of a ball between two.
 const FIRST: usize = 8;
+
+/// Durations so many of which are a part of each other, and when they were: three powers of eight.
+const MARKS: usize = 4;
 
 /// The states kept: two cycles back from the last jump.
 const STATES: usize = 2 * LONGEST_CYCLE + 1;
@@ -27,6 +30,8 @@ const STATES: usize = 2 * LONGEST_CYCLE + 1;
 pub(crate) struct Contraction<S> {
     durations: [f64; MEMORY],
     count: usize,
+    /// The first of the last durations of each size, and how many there were with it.
+    marks: [(f64, usize); MARKS],
     /// Kept only while jumps come in short times: no limit is near elsewhere, and a jump by a
     /// formula costs little more than their copy.
     states: Option<States<S>>,
@@ -90,7 +95,7 @@ impl<S: State> States<S> {
 impl<S: State> Contraction<S> {
     /// Before any jump.
     pub(crate) const fn new() -> Self {
-        Self { durations: [0.0; MEMORY], count: 0, states: None }
+        Self { durations: [0.0; MEMORY], count: 0, marks: [(0.0, 0); MARKS], states: None }
     }
 
     /// Adds a jump some time after the one at the instant before, and the state `after` it, which
@@ -100,6 +105,10 @@ impl<S: State> Contraction<S> {
         if duration > 0.0 {
             self.durations[self.count % MEMORY] = duration;
             self.count += 1;
+            let (marked, _) = self.marks[MARKS - 1];
+            if !(duration > ROUGHLY * marked && ROUGHLY * duration < marked) {
+                self.mark(duration);
+            }
             match &mut self.states {
                 states if !short => *states = None,
                 Some(states) => states.push(after),
@@ -108,6 +117,32 @@ impl<S: State> Contraction<S> {
         } else if let Some(states) = &mut self.states {
             states.replace(after);
         }
+    }
+
+    /// A duration of another size: of one that is longer others count no more.
+    #[cold]
+    #[inline(never)]
+    fn mark(&mut self, duration: f64) {
+        let mark = (duration, self.count);
+        if duration > self.marks[MARKS - 1].0 {
+            self.marks = [mark; MARKS];
+        } else {
+            self.marks.rotate_left(1);
+            self.marks[MARKS - 1] = mark;
+        }
+    }
+
+    /// Whether the durations have come down as a geometric series does of the last ratio, with
+    /// `cycle` of them. Where ratios rise to one, as those of impacts that lose less the slower they
+    /// are, durations fall as a power of their number, and a geometric series would have taken
+    /// longer to come down as far; from what they are no bound follows. As long and half as long is
+    /// too long. Held by `accumulation::ratios_that_rise_to_one_certify_no_limit`.
+    fn is_geometric(&self, cycle: usize) -> bool {
+        let back = (self.count.min(MEMORY) - 1) / cycle * cycle;
+        let ((first, count), last) = (self.marks[0], self.last(0));
+        let jumps = (self.count - count) as f64;
+        let each = (self.last(back) / last).ln() / back as f64;
+        each > 0.0 && (first / last).ln() <= (1.0 + FEW * ROUGHLY) * jumps * each
     }
 
     /// The duration `back` jumps ago, 0 for the last one.
@@ -123,7 +158,8 @@ impl<S: State> Contraction<S> {
     /// is at most S r/(1-r).
     ///
     /// Where rounding spoils the durations (`hidden`) before they are as short as that, nothing
-    /// better can be had later: the ratios decide if they are clearly below one.
+    /// better can be had later: ratios that are clearly below one decide, and certify the limit if
+    /// they do not rise.
     #[inline(always)]
     pub(crate) fn limit(&self, elapsed: f64, hidden: bool) -> Option<Ahead> {
         let open = self.count == 0 || self.last(0) > FAR * FAR * f64::EPSILON * elapsed && !hidden;
@@ -134,7 +170,8 @@ impl<S: State> Contraction<S> {
     #[inline(never)]
     fn near(&self, elapsed: f64, hidden: bool) -> Option<Ahead> {
         if hidden {
-            return self.certified(f64::INFINITY, 1.0 - SMALL);
+            let ahead = self.certified(f64::INFINITY, 1.0 - SMALL)?;
+            return Some(Ahead { certified: self.is_geometric(ahead.cycle), ..ahead });
         }
         // Too short to resolve: nothing moves. What rounding or a step leaves of ratios of one is
         // no contraction.
@@ -160,7 +197,7 @@ impl<S: State> Contraction<S> {
                 && self.states.as_ref().is_some_and(|states| states.contract(cycle)))
             .then(|| {
                 let cycles = ratio / (1.0 - ratio);
-                Ahead { remaining: last_cycle * cycles, cycle, cycles }
+                Ahead { remaining: last_cycle * cycles, cycle, cycles, certified: true }
             })
         };
         // Each is an upper bound: rise and fall of a ball differ by a rounding, and as a cycle of
@@ -191,11 +228,15 @@ pub(crate) struct Ahead {
     /// last.
     cycle: usize,
     cycles: f64,
+    /// Whether the ratios bound what remains; not where rounding hides whether.
+    pub(crate) certified: bool,
 }
 
 impl Ahead {
     /// At once.
-    pub(crate) const NOW: Self = Self { remaining: 0.0, cycle: 0, cycles: 0.0 };
+    pub(crate) const fn now(certified: bool) -> Self {
+        Self { remaining: 0.0, cycle: 0, cycles: 0.0, certified }
+    }
 }
 
 /// Jumps at one time, one after the other, and how far they move the state.

@@ -131,8 +131,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// The state is at a wall if rounding alone may have left its guard `g`.
     #[cold]
     fn find_wall(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) {
-        self.renew(edge, t, x, g);
-        if g <= ROUNDINGS * self.still(edge, t, x, g) {
+        let still = self.still(edge, t, x, g);
+        if g <= ROUNDINGS * self.renewed(edge, t, x, g, still) {
             self.memory.at_wall(edge, g);
         }
     }
@@ -158,8 +158,8 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             }
             return Ok(false);
         }
-        self.renew(edge, t, x, g);
         let still = self.entry_error(edge, t, x, g);
+        let still = self.renewed(edge, t, x, g, still);
         let Leaving { slope, straight } = self.leaving(mode, edge, t, x, g, still);
         // A flow that is no number here says nothing.
         let rounding = if slope.is_nan() { still } else { slope.abs() * self.tick(t) + still };
@@ -191,28 +191,33 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         }
     }
 
-    /// Where the roundings of what the coordinates of `x` were before the last jump decide whether
-    /// a guard `g` is zero: what its reset makes of them.
+    /// How far a guard `g` at `x` may be off, `still` by the roundings of what the coordinates were
+    /// before the last jump: where they decide whether it is zero, by what its reset makes of them.
     ///
     /// Moved by a part of what it was summed up from, a coordinate that the reset gives anew stays
     /// as it is, and one that it keeps moves with it.
-    fn renew(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64) {
-        let is_zero = |rounding: f64| g.abs() <= ROUNDINGS * rounding;
-        let (Some(last), true) = (self.memory.last, self.memory.left.is_some()) else { return };
-        if !is_zero(self.still(edge, t, x, g)) || is_zero(self.rounding(edge, t, x, g, x)) {
-            return;
+    fn renewed(&mut self, edge: A::Edge, t: f64, x: &A::State, g: f64, still: f64) -> f64 {
+        if self.memory.left.is_none() || g.abs() > ROUNDINGS * still {
+            return still;
         }
-        let Some(Left { from, before, to }) = self.memory.left.take() else { return };
+        let (Some(last), Some(Left { from, before, to })) = (self.memory.last, self.memory.left.take()) else {
+            return still;
+        };
         let reset = |t: f64, y: &A::State| {
             let (mode, after) = self.automaton.reset(from, last, t, y).ok()?;
             (mode == to && after.len() == x.len() && after.is_finite()).then_some(after)
         };
-        let by_time = FAR * self.tick(t);
-        let (Some(moved), Some(later)) = (reset(t, &self.nudged(&before)), reset(t + by_time, &before)) else { return };
-        self.memory.largest = Some(x.with(|i| {
+        let (moved, later) = (reset(t, &self.nudged(&before)), reset(t + FAR * self.tick(t), &before));
+        let (Some(moved), Some(later)) = (moved, later) else { return still };
+        let sizes = x.with(|i| {
             let by = |after: &A::State, part: f64| (after.get(i) - x.get(i)).abs() / part;
             x.get(i).abs().max(by(&moved, TINY * weight(i))).max(by(&later, FAR * f64::EPSILON))
-        }));
+        });
+        if (0..x.len()).all(|i| 2.0 * sizes.get(i) >= self.size(x, i)) {
+            return still;
+        }
+        self.memory.largest = Some(sizes);
+        self.still(edge, t, x, g)
     }
 
     /// After the jump by `edge` from `before` in mode `from` to `after` in mode `to`: a guard that

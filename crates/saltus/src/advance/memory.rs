@@ -191,10 +191,12 @@ impl<M, E: Copy + PartialEq, S: State> Memory<M, E, S> {
     }
 
     /// A piece of the arc from `x` lasted so long that each coordinate changed `by` so much, if it
-    /// went on as at its start. What is within a factor of two of what there was is left.
+    /// went on as at its start; a step of an implicit method is not summed up from that. What is
+    /// within a factor of two of what there was is left.
     #[inline]
     pub(super) fn reaches(&mut self, x: &S, by: impl Fn(usize) -> f64) {
-        let here = |i: usize| larger(x.get(i).abs(), by(i).abs());
+        let stiff = self.gait.stiff;
+        let here = |i: usize| larger(x.get(i).abs(), if stiff { 0.0 } else { by(i).abs() });
         self.reach = match self.reach.take() {
             Some(reach) if (0..x.len()).all(|i| here(i) <= 2.0 * reach.get(i)) => Some(reach),
             Some(reach) => Some(x.with(|i| larger(reach.get(i), here(i)))),

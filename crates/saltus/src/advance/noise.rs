@@ -31,7 +31,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
     /// an arc, |xᵢ'| there times how long it lasts), over the arcs since it was last exactly zero.
     ///
     /// A coordinate that is a rounding of what it was has the rounding of what it was, until a
-    /// reset gives it anew (`renew`). At the start of a run nothing was summed up: |xᵢ|.
+    /// reset gives it anew (`renewed`). At the start of a run nothing was summed up: |xᵢ|.
     #[cold]
     pub(super) fn sizes(&self, x: &A::State) -> A::State {
         x.with(|i| self.size(x, i))

@@ -81,7 +81,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             if clear {
                 self.memory.walls.clear(); // clear of zero
                 if !at_stop && !observer.wants_pieces() {
-                    self.reached(&x, h, &slope);
+                    self.memory.reaches(&x, |i| h * slope.get(i));
                     (clock.now, x, first, slope) = (arrival, trial.end, false, trial.slope);
                     continue;
                 }
@@ -125,7 +125,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             if observer.piece(mode, &Piece::new(clock.now, h, h, step.c)).is_break() {
                 return Ok(ArcEnd::Stop { stop: Stop::Observer, time: arrival, state });
             }
-            self.reached(&x.clone(), h, &slope.clone());
+            self.memory.reaches(&x.clone(), |i| h * slope.get(i));
             (clock.now, x, first, slope) = (arrival, state, false, trial.slope);
             if at_stop {
                 if let Some(edge) = self.pass_stop(mode, clock.now, &x.clone())? {
@@ -137,14 +137,6 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
                 self.keep_staying(mode, clock.now, &x.clone(), h);
             }
         }
-    }
-
-    /// A step of size `h` from `x`, where x' is the `slope`, was taken. One of an implicit method
-    /// is not summed up from that.
-    #[inline]
-    fn reached(&mut self, x: &A::State, h: f64, slope: &A::State) {
-        let h = if self.memory.gait.stiff { 0.0 } else { h };
-        self.memory.reaches(x, |i| h * slope.get(i));
     }
 
     /// The first crossing on a last step that is shorter than the rounding of time: on a line,

@@ -78,6 +78,10 @@ pub trait Automaton {
 
     /// The mode and state just after `edge` is taken out of `mode` from the state `x` just before.
     ///
+    /// A function of these four alone. It is asked of nearby times and states as well, where the
+    /// rounding of a coordinate decides and depends on whether the reset keeps the coordinate or
+    /// gives it anew.
+    ///
     /// # Errors
     /// A [`Refusal`] where there is no state after: the run fails with it, with time, mode, edge
     /// and state.

@@ -15,8 +15,8 @@ const DEEPEST: u32 = 64;
 /// Evaluations within one search, after which halving stops.
 const MOST_EVALUATIONS: u32 = 20_000;
 
-/// A rise from a root at the start is looked for at so many times, each nearer by the same part, down to
-/// 2⁻³³ of the stretch.
+/// A rise from a root at the start is looked for at so many times, each nearer by the same part,
+/// down to 2⁻³³ of the stretch.
 const LOOKS_BACK: usize = 11;
 
 /// An interval of the search.
@@ -200,8 +200,9 @@ impl Search<'_> {
             && q.start() < -q_margin
             && (known.is_some() || least < -margin && self.falls_from_start(b, q.start())?)
         {
-            // The samples may be too far apart to see that the guard rises first.
-            let rises = known.is_none() && self.rises_first(b)?;
+            // The samples may be too far apart to see that the guard rises first, unless it is a
+            // polynomial as far as they show.
+            let rises = known.is_none() && margin > MINUTE * scale && self.rises_first(b)?;
             return Ok(if rises { Next::Halves } else { Next::Part(Part::AtStart) });
         }
         let order = || Some(order(start - base, end - base, a, b));
