@@ -8,14 +8,15 @@ use saltus_cases::cases;
 
 use crate::methods::methods;
 
-/// From far away down to 10⁶, and there anew at `small` above the wall, which is 20 s away.
+/// From far away down to 10⁶, and there anew at `small` above the wall, which is 20 s away; then x
+/// counts the time.
 fn dock(speed: f64, small: f64, exact: bool) -> Hybrid<'static, f64> {
     let model = Hybrid::new()
         .mode("cruise", move |_t, _x: &f64| -speed)
         .edge("cruise", "dock", |_t, x| x - 1e6, move |_t, _x| small)
         .mode("dock", move |_t, _x| -small / 20.0)
         .switch("dock", "end", |_t, x| *x)
-        .mode("end", |_t, _x| 0.0);
+        .mode("end", |_t, _x| 1.0);
     if exact { model.exact("dock", move |_t, x| [*x, -small / 20.0].into()) } else { model }
 }
 
@@ -63,6 +64,26 @@ proptest! {
         let after = second.time.since(first.time);
         // Two times of 10⁷ s, each rounded.
         prop_assert!((after - 20.0).abs() < 1e-7, "{after} s after the reset");
+    }
+
+    /// Also where a limit of the run ended its arc a nanometre before the wall.
+    #[test]
+    fn a_run_that_goes_on_near_a_wall_meets_it(method in 0..4_usize, far in 9.0..12.0_f64, near in 1.0..3.0_f64) {
+        let (far, near) = (10_f64.powf(far), 1e-9 * near);
+        let model = dock(far / 1e7, 1.0, false).exact("cruise", move |_t, x| [*x, -far / 1e7].into());
+        // A second behind the wall.
+        let span = 0.0..1e7 * (1.0 - 1e6 / far) + 21.0;
+        let simulation = Simulation::of(&model).stepper(methods()[method]);
+        let mut course = simulation.first_step(100.0).start("cruise", far, span.clone()).unwrap();
+        prop_assert_eq!(course.advance(&mut ()).unwrap(), None);
+        let cut_short = simulation.longest_step(20.0 * (1.0 - near)).most_steps(1);
+        let mut course = cut_short.resume(course.checkpoint());
+        let cut = course.finish(&mut ()).unwrap();
+        prop_assert!(cut.mode == "dock" && cut.state < 2.0 * near, "{cut:?}");
+        let whole = simulation.drive("cruise", far, span, &mut ()).unwrap();
+        let end = simulation.resume(course.checkpoint()).finish(&mut ()).unwrap();
+        prop_assert_eq!((end.mode, end.jumps), (whole.mode, 2));
+        prop_assert!((end.state - whole.state).abs() < 1e-8, "{} and {}", end.state, whole.state);
     }
 
     /// An angle that has turned a whole time is what it was, less a turn: the rounding of a turn.

@@ -207,11 +207,14 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
             let (mode, after) = self.automaton.reset(from, last, t, y).ok()?;
             (mode == to && after.len() == x.len() && after.is_finite()).then_some(after)
         };
+        // Not `x` itself, which has moved on where a limit of the run ended the arc.
+        let Some(after) = reset(t, &before) else { return still };
         let (moved, later) = (reset(t, &self.nudged(&before)), reset(t + FAR * self.tick(t), &before));
         let (Some(moved), Some(later)) = (moved, later) else { return still };
         let sizes = x.with(|i| {
-            let by = |after: &A::State, part: f64| (after.get(i) - x.get(i)).abs() / part;
-            x.get(i).abs().max(by(&moved, TINY * weight(i))).max(by(&later, FAR * f64::EPSILON))
+            let here = after.get(i);
+            let by = |other: &A::State, part: f64| (other.get(i) - here).abs() / part;
+            here.abs().max(by(&moved, TINY * weight(i))).max(by(&later, FAR * f64::EPSILON))
         });
         if (0..x.len()).all(|i| 2.0 * sizes.get(i) >= self.size(x, i)) {
             return still;

@@ -84,10 +84,16 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
         None
     }
 
-    /// What the coordinates at the end of an arc were summed up from, on it and before.
+    /// What the coordinates at the end of an arc were summed up from, on it and before: on its
+    /// pieces, or on the whole of a solution.
     fn summed_from(&self, mode: A::Mode, (x, now): (&A::State, Time), (y, time): (&A::State, Time)) -> A::State {
-        let reach = self.reach_of(mode, [now.seconds(), time.seconds()], [x, y]);
-        reach.with(|i| reach.get(i).max(self.size(x, i)))
+        match self.memory.reach.as_ref().filter(|reach| reach.len() == x.len()) {
+            Some(reach) => reach.with(|i| reach.get(i).abs().max(y.get(i).abs()).max(self.size(x, i))),
+            None => {
+                let reach = self.reach_of(mode, [now.seconds(), time.seconds()], [x, y]);
+                reach.with(|i| reach.get(i).max(self.size(x, i)))
+            }
+        }
     }
 
     /// The rounding of a guard `g`, where that alone keeps it from zero: by its slopes, and by what
