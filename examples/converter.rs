@@ -97,9 +97,9 @@ fn main() -> Result<(), Box<dyn Error>> {
             Ok([supply, q[0]])
         };
         (0..300).try_for_each(|_| period().map(drop))?;
-        (0..200).map(|_| period()).collect()
+        (0..100).map(|_| period()).collect()
     };
-    let supplies = (0..600).into_par_iter().map(|k| 20.0 + 0.025 * f64::from(k));
+    let supplies = (0..500).into_par_iter().map(|k| 20.0 + 0.03 * f64::from(k));
     let points = supplies.map(attractor).collect::<Result<Vec<_>, _>>()?.concat();
 
     let buck = Buck(20.0);

@@ -92,7 +92,7 @@ const policy = [
   "base-uri 'none'",
   "form-action 'none'",
 ].join("; ");
-const filled = { POLICY: policy, STYLE: style, BEGIN: begin, SCRIPT: script, WASM: packed(readFileSync(wasm), pack) };
+const filled = { POLICY: policy, STYLE: style, BEGIN: begin, SCRIPT: script, WASM: packed(wasm, pack) };
 /// A word of the interface, which every language has to have.
 function word(key) {
   if (!(key in words)) throw new Error(`words/${language}.json has no "${key}"`);

@@ -1,6 +1,8 @@
 // Compiled bytes as text in a page: without notes and names for tools, packed, and seven bits to a
 // character.
 import { execFileSync } from "node:child_process";
+import { createHash } from "node:crypto";
+import { existsSync, readFileSync, writeFileSync } from "node:fs";
 
 /// Sections of a WebAssembly module that hold no part of the program have the number 0, that of the
 /// names by which it is called 7.
@@ -83,7 +85,13 @@ function text(bytes) {
   return Buffer.from(codes.buffer).toString("utf16le");
 }
 
-/// A program that packs its input into its output.
-const gzip = (bytes, pack) => execFileSync(pack, { input: bytes, maxBuffer: Infinity });
+/// What a program packs of its input. That takes half a minute, so it is kept beside the module,
+/// under what it was made of and by.
+function gzip(bytes, pack, beside) {
+  const hash = createHash("sha256").update(bytes).update(readFileSync(pack)).digest("hex");
+  const kept = `${beside}.${hash.slice(0, 16)}.gz`;
+  if (!existsSync(kept)) writeFileSync(kept, execFileSync(pack, { input: bytes, maxBuffer: Infinity }));
+  return readFileSync(kept);
+}
 
-export const packed = (module, pack) => text(gzip(bare(module), pack));
+export const packed = (file, pack) => text(gzip(bare(readFileSync(file)), pack, file));

@@ -42,6 +42,7 @@ mod fit;
 mod fitted;
 mod study;
 
-// The house: the graph of imports, the listings of the pages.
+// The house: the graph of imports, the pages and their listings.
 mod imports;
 mod listings;
+mod pages;
