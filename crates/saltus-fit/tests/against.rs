@@ -165,4 +165,34 @@ proptest! {
         let said = "Tape: one edge inches and one edge cm.";
         prop_assert!(!remarked(&fit(&table(1.0, said))), "{}", table(1.0, said));
     }
+
+    /// Readings in a unit that no heading has are doubted; what they were converted from, and the
+    /// unit of a rule or of the ball, is none of theirs.
+    #[test]
+    fn a_unit_that_no_heading_has_is_doubted(e in 0.6f64..0.85, unit in 0usize..4) {
+        let table = |said: &str| {
+            let rows: String = (0..5).map(|n| format!("{n},{:.1}\n", 180.0 * e.powi(2 * n))).collect();
+            format!("Ball dropped on the floor\nBounce,Height (cm)\n{rows}{said}\n")
+        };
+        let unit = ["inches", "mm", "feet", "metres"][unit];
+        for said in [
+            format!("The last two bounces were read in {unit}."),
+            format!("heights in {unit}"),
+            format!("Bounce 3 is in {unit}, sorry"),
+            format!("the last three rebounds in {unit}"),
+            format!("Höhe 2 wurde in {unit} gemessen"),
+            format!("hauteurs 3 et 4 en {unit}"),
+        ] {
+            prop_assert!(remarked(&fit(&table(&said))), "{}", table(&said));
+        }
+        for said in [
+            format!("Heights were read in {unit} and converted to cm"),
+            format!("ruler marked in {unit}"),
+            format!("Diameter of the ball in {unit}: 4"),
+            format!("no reading was in {unit}"),
+            "all heights in cm".to_owned(),
+        ] {
+            prop_assert!(!remarked(&fit(&table(&said))), "{}{}", table(&said), fit(&table(&said)));
+        }
+    }
 }

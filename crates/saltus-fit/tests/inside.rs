@@ -38,6 +38,7 @@ fn files() -> Vec<PathBuf> {
         "read/computed.rs",
         "read/strange.rs",
         "read/grid/grouped.rs",
+        "read/grid/sections.rs",
         "read/columns/conditions.rs",
         "read/columns/coordinates.rs",
         "read/columns/gates.rs",

@@ -40,6 +40,7 @@ mod records;
 mod remarks;
 mod said;
 mod school;
+mod sections;
 mod sensors;
 mod shares;
 mod sheets;

@@ -4,14 +4,16 @@
 use std::collections::HashMap;
 
 use super::cell::Cell;
+use super::clause::clauses;
 use super::columns::{Column, Columns};
 use super::datum::Of;
 use super::grid::shown;
 use super::heading::{At, DropHeight, Heading, Role, Value, What};
+use super::phrases::{Phrase, denies};
 use super::region::Region;
 use super::said::ALIKE;
 use super::units::{Dimension, Scale, Unit};
-use super::vocabulary::Atom;
+use super::vocabulary::{Atom, folded};
 use super::words::{Kind, Word, split};
 use super::{Event, Table};
 use crate::finding::Doubt;
@@ -61,11 +63,19 @@ pub(super) fn no_fall(region: &Region<'_>, columns: &Columns) -> Option<Doubt> {
     other.then(|| Doubt::Fall { drop: shown(drop), speed: shown(&named.heading.text) })
 }
 
+fn length(unit: &Unit) -> bool {
+    si(*unit, Dimension::Length)
+}
+
+/// The units of length that headings have.
+fn of_headings(region: &Region<'_>) -> Vec<Unit> {
+    region.header.iter().filter_map(|name| Heading::parse(name).unit).filter(length).collect()
+}
+
 /// Whether a text names a unit of length that no heading has, and a rebound is to another one from
 /// the same height as the two units are.
 pub(super) fn mixed(region: &Region<'_>, table: &Table, text: &str) -> bool {
-    let length = |unit: &Unit| si(*unit, Dimension::Length);
-    let own: Vec<Unit> = region.header.iter().filter_map(|name| Heading::parse(name).unit).filter(length).collect();
+    let own = of_headings(region);
     let unit = |word: &Word| match word.kind {
         Kind::Known(_) if word.text.chars().count() > 1 => Unit::parse(&word.text).filter(length),
         _ => None,
@@ -93,6 +103,38 @@ pub(super) fn mixed(region: &Region<'_>, table: &Table, text: &str) -> bool {
         heights.iter().any(|of_one| of_one.iter().any(|height| like(of_one, *height)))
     };
     factors.any(apart)
+}
+
+/// Whether a clause of a text says that readings are in a unit of length that no heading has: `the
+/// last two bounces were read in inches`; but not if it says what they were converted from, nor
+/// what a rule is divided into.
+pub(super) fn misread(region: &Region<'_>, text: &str) -> bool {
+    let own = of_headings(region);
+    let plain = |word: &Word| matches!(word.kind, Kind::Known(_));
+    let apart = |word: &Word| {
+        let other = [Atom::Tool, Atom::Release, Atom::Error, Atom::Void, Atom::Note].iter().any(|atom| word.is(*atom));
+        let spelt = folded(&word.text);
+        other
+            || Phrase::Converted.is(&spelt)
+            || Phrase::Diameter.is(&spelt)
+            || Phrase::Radius.is(&spelt)
+            || denies(&spelt)
+    };
+    let of_readings = |word: &Word| match word.kind {
+        Kind::Known(atoms) => atoms.iter().any(|a| a.measures() || matches!(a, Atom::Read | Atom::Person)),
+        _ => false,
+    };
+    let strange = |clause: &str| {
+        let words = split(clause);
+        let stated = words.windows(2).position(|pair| {
+            let unit = Unit::parse(&pair[1].text).filter(length).filter(|unit| !own.contains(unit));
+            Phrase::In.is(&folded(&pair[0].text)) && pair[1].text.chars().count() > 1 && unit.is_some()
+        });
+        let Some(at) = stated.filter(|_| !words.iter().any(apart)) else { return false };
+        let mut others = words[..at].iter().chain(&words[at + 2..]);
+        others.clone().any(of_readings) || others.all(plain)
+    };
+    !own.is_empty() && clauses(text).any(strange)
 }
 
 /// The doubt whether releases and rebounds are read at the same end of the ball, where one names

@@ -231,6 +231,7 @@ pub(super) fn doubt((n, region): (usize, &Region<'_>), table: &Table, remarks: &
     let pooled = |remark: &Remark<'_>| one && pools(remark.text) && !summed(remark.line);
     let beyond = |remark: &Remark<'_>| match () {
         () if pooled(remark) => Some(Change::Changed),
+        () if against::misread(region, remark.text) => Some(Change::Shifted),
         () if against::mixed(region, table, remark.text) => Some(Change::Unsure),
         () => None,
     };

@@ -5,6 +5,8 @@ use std::collections::BTreeMap;
 
 use super::said::ALIKE;
 use super::units::Unit;
+use super::vocabulary::{Atom, folded};
+use super::words::split;
 use super::written::step;
 use super::{Event, Reading, Table};
 use crate::finding::Doubt;
@@ -20,12 +22,20 @@ const CHANCE: f64 = 8.0;
 /// a rule shows no more.
 const FINER: f64 = 1.0;
 
+/// Of a factor that the text states heights are computed where a ball would keep to it as well by
+/// chance less often than once in so many powers of ten.
+const CHANCE_STATED: f64 = 2.0;
+
+/// So many words lie between the name of a COR and its number at most, with the name: `COR of
+/// about 0.8`.
+const NAMED: usize = 3;
+
 /// The factors that two heights may have been computed by, and how much it tells that they are of
 /// one: in powers of ten, how much finer the heights are written than a ball keeps to a factor.
 struct Link {
     low: f64,
     high: f64,
-    told: f64,
+    fine: f64,
 }
 
 impl Link {
@@ -33,18 +43,21 @@ impl Link {
     fn of(before: f64, after: f64, step: f64) -> Option<Self> {
         let half = 0.5 * step;
         let fine = (KEEPS * after / step).log10();
-        let told = if fine >= FINER { fine } else { 0.0 };
         (before > step && after > step).then(|| Self {
             low: (after - half) / (before + half),
             high: (after + half) / (before - half),
-            told,
+            fine,
         })
+    }
+
+    fn told(&self) -> f64 {
+        if self.fine >= FINER { self.fine } else { 0.0 }
     }
 }
 
 /// The doubt about heights of a ball, or of a floor, each of which is the one before it times one
-/// factor, as far as the digits tell.
-pub(super) fn doubt(table: &Table) -> Option<Doubt> {
+/// factor, as far as the digits tell; a COR, or its square, that a text states is such a factor.
+pub(super) fn doubt<'a>(table: &Table, texts: impl Iterator<Item = &'a str>) -> Option<Doubt> {
     let metadata = &table.metadata;
     if metadata.pixels || metadata.ratios || metadata.speeds {
         return None;
@@ -62,7 +75,31 @@ pub(super) fn doubt(table: &Table) -> Option<Doubt> {
         let found = next.filter_map(|pair| Link::of(pair[0].1, pair[1].1, step));
         links.entry(&trial.group).or_default().extend(found);
     }
-    links.into_values().find_map(|links| of_one_factor(&links))
+    let stated: Vec<f64> = texts.flat_map(factors).collect();
+    links.into_values().find_map(|links| of_one_factor(&links).or_else(|| of_stated(&links, &stated)))
+}
+
+/// What heights fall to by the CORs, or the ratios of heights, that a text states right behind
+/// their names: `assume e = 0.81`, `a COR of 0.81`.
+fn factors(text: &str) -> Vec<f64> {
+    let parts = |c: char| c.is_whitespace() || matches!(c, '=' | '(' | ')' | ';' | ':' | '~' | '≈');
+    let tokens: Vec<&str> = text.split(parts).filter(|token| !token.is_empty()).collect();
+    let named =
+        |token: &&str| split(token).iter().any(|w| w.is(Atom::Cor) || w.is(Atom::Ratio) || folded(&w.text) == "e");
+    let number = |token: &str| token.trim_end_matches(['.', ',']).replace(',', ".").parse::<f64>().ok();
+    let stated = tokens.iter().enumerate().filter_map(|(at, token)| {
+        let number = number(token).filter(|n| *n > 0.0 && *n < 1.0)?;
+        tokens[at.saturating_sub(NAMED)..at].iter().any(named).then_some(number)
+    });
+    stated.flat_map(|n| [n * n, n]).collect()
+}
+
+/// The doubt where links are of a factor that is stated.
+fn of_stated(links: &[Link], stated: &[f64]) -> Option<Doubt> {
+    let told: f64 = links.iter().map(|link| link.fine.max(0.0)).sum();
+    let of = |factor: &&f64| links.iter().all(|link| link.low <= **factor && **factor <= link.high);
+    let factor = stated.iter().find(of).filter(|_| links.len() >= ALIKE && told >= CHANCE_STATED)?;
+    Some(Doubt::Computed { factor: digits(*factor, KEEPS * factor), heights: links.len() })
 }
 
 /// To how much heights were written, in a unit of either system, m.
@@ -76,8 +113,8 @@ fn written(heights: impl Iterator<Item = f64> + Clone) -> f64 {
 fn of_one_factor(links: &[Link]) -> Option<Doubt> {
     let low = links.iter().map(|link| link.low).fold(0.0, f64::max);
     let high = links.iter().map(|link| link.high).fold(f64::INFINITY, f64::min);
-    let most = links.iter().map(|link| link.told).fold(0.0, f64::max);
-    let told = links.iter().map(|link| link.told).sum::<f64>() - most;
+    let most = links.iter().map(Link::told).fold(0.0, f64::max);
+    let told = links.iter().map(Link::told).sum::<f64>() - most;
     let alike = links.len() >= ALIKE && low <= high && told >= CHANCE;
     alike.then(|| Doubt::Computed { factor: digits(f64::midpoint(low, high), high - low), heights: links.len() })
 }

@@ -263,7 +263,7 @@ fn bounces(region: &mut Region<'_>, options: &ReadOptions, metadata: Metadata) -
     // What stands for a height, a part or an energy, has a factor of its own.
     let stands = |c: &Column| matches!(c.kind, Of::Share | Of::Lost) || c.heading.energy.is_some();
     if !columns.columns.iter().any(stands) {
-        table.doubts.extend(computed::doubt(&table));
+        table.doubts.extend(computed::doubt(&table, said::texts(region)));
     }
     Ok(table)
 }

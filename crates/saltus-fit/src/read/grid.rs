@@ -2,6 +2,7 @@
 
 mod grouped;
 mod repeated;
+mod sections;
 mod unfold;
 
 use csv::{ReaderBuilder, StringRecord};
@@ -58,6 +59,7 @@ impl<'a> Grid<'a> {
         grid.decimal = grid.comma() && grid.decimal_commas();
         grid.united();
         grid.unfold();
+        grid.section();
         Ok(grid)
     }
 

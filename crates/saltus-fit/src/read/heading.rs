@@ -297,6 +297,13 @@ impl Heading {
         }
     }
 
+    /// What its numbers are if they are times: `hit 1 (frame)` is what `hit 1 (s)` is.
+    pub(super) fn of_times(&self) -> Option<Value> {
+        let words = split(&self.text).into_iter().filter(|word| !word.is(Atom::Frame)).map(|word| word.text);
+        let heading = Self::parse(&format!("{} (s)", words.collect::<Vec<_>>().join(" ")));
+        heading.value().filter(|v| matches!(v.what, What::Time | What::Interval) && heading.unknown.is_empty()).cloned()
+    }
+
     /// The words that name a ball or a surface, without what counts them.
     pub(super) fn labels(&self) -> String {
         self.labels.join(" ")

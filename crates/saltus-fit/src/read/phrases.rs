@@ -146,10 +146,12 @@ pub(super) enum Phrase {
     Program,
     /// What a floor is called at the end of its name.
     Flooring,
+    /// Numbers were taken from one unit to another.
+    Converted,
 }
 
 impl Phrase {
-    const ALL: [(&'static str, Self); 69] = [
+    const ALL: [(&'static str, Self); 70] = [
         ("missing", Self::Missing),
         ("about", Self::About),
         ("half", Self::Half),
@@ -219,6 +221,7 @@ impl Phrase {
         ("particle", Self::Particle),
         ("program", Self::Program),
         ("flooring", Self::Flooring),
+        ("converted", Self::Converted),
     ];
 
     /// The phrases of this kind, in the order of the file.

@@ -366,6 +366,23 @@ impl Columns {
         Ok(())
     }
 
+    /// When the ball was let go is a time, and no height, where its name counts frames, or a line
+    /// states a unit of times and none of heights, no word says that it is one, and it is before all
+    /// else in each row.
+    pub(super) fn let_go(&mut self, region: &Region<'_>) {
+        let timed = matches!(region.units, (Some(_), None));
+        let open = |c: &Column| c.unit.is_none() && ![Atom::Height, Atom::Position].iter().any(|a| c.heading.has(*a));
+        let release = |c: &Column, v: &Value| v.what == What::Height && v.at == At::Release && open(c);
+        let found = self.values().find(|(_, c, v)| release(c, v) && (timed || c.heading.has(Atom::Frame)));
+        let Some(index) = found.map(|(n, _, _)| n) else { return };
+        let times: Vec<usize> = self.values().filter(|(_, _, v)| v.what == What::Time).map(|(n, _, _)| n).collect();
+        let number = |row: usize, column: usize| region.view.number(row, column);
+        let before = |&row: &usize| times.iter().all(|&n| number(row, index) < number(row, n));
+        if !times.is_empty() && region.rows.iter().filter(|row| number(**row, index).is_some()).all(before) {
+            self.leave(index, Why::Other);
+        }
+    }
+
     /// Times between contacts that rise from row to row are a running clock: those of a ball fall,
     /// but where every row has a height of release, and is a drop of its own.
     fn running(&mut self, region: &Region<'_>) {

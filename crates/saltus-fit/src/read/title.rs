@@ -13,7 +13,7 @@ use super::region::Region;
 use super::sizes::states_length;
 use super::units::{Dimension, Unit};
 use super::vocabulary::{Atom, ROWS, folded, misspelt};
-use super::words::{Kind, Word, split};
+use super::words::{Kind, Word, split, without_brackets};
 use super::{Event, Table};
 use crate::finding::{Doubt, Note, Remark};
 use crate::statistics::{FILMED, RATES};
@@ -123,8 +123,11 @@ pub(super) fn stated(region: &Region<'_>) -> Stated {
         found.name = if cells.len() == 1 && row < region.header_row { text } else { found.name };
     }
     found.drop = found.drop.or(wrapped).or_else(commented);
+    found.frames |= region.view.grid.comments().take(ROWS).any(|(_, text)| counts_frames(text));
     // Numbers of frames that a title speaks of are times, where it names no other quantity.
-    if let (true, Some((fps, _)), (None, None)) = (found.frames, found.fps, found.units) {
+    let commented = || region.view.grid.comments().take(ROWS).find_map(|(_, text)| frame_rate(text));
+    let fps = found.fps.map(|(fps, _)| fps).or_else(commented);
+    if let (true, Some(fps), (None, None)) = (found.frames, fps, found.units) {
         found.units.0 = Some(Unit::frame(fps));
     }
     found
@@ -207,7 +210,8 @@ fn lone(region: &Region<'_>) -> Option<(f64, u64)> {
 /// Whether a clause of a title is of frames, all of its words being understood: `frame in which the
 /// ball touches the floor`.
 fn counts_frames(text: &str) -> bool {
-    let parts = clauses(text).flat_map(|part| part.split(" - "));
+    let text = without_brackets(text);
+    let parts = clauses(&text).flat_map(|part| part.split(" - "));
     let mut of_frames = parts.map(Heading::parse).filter(|h| h.has(Atom::Frame) && h.value().is_none());
     of_frames.any(|heading| heading.unknown.is_empty() && (heading.rate.is_none() || heading.has(Atom::Number)))
 }

@@ -7,12 +7,20 @@ use crate::read::heading::{At, Value, What};
 use crate::read::phrases::Phrase;
 use crate::read::region::Region;
 use crate::read::units::Scale;
-use crate::read::vocabulary::folded;
+use crate::read::vocabulary::{Atom, folded};
 use crate::read::words::pieces;
 
 /// Temperatures that differ by no more, in degrees, are those of one room through the day: nobody
 /// cools or warms a ball by so little.
 const ROOM: f64 = 3.0;
+
+/// Whether a heading bears the sign of a height that counts: `h1`, `Rebound height h_2`.
+fn signs(column: &Column) -> bool {
+    let sign = |word: &String| {
+        folded(word).strip_prefix('h').is_some_and(|n| n.chars().all(|c| c.is_ascii_digit() || c == '_'))
+    };
+    pieces(&column.heading.text).iter().any(sign)
+}
 
 impl Columns {
     /// Cells that all bear degrees, or a unit of pressure, are conditions, whatever stands above.
@@ -32,25 +40,36 @@ impl Columns {
         }
     }
 
-    /// Where a line states the height of release by a sign that counts, `Drop height H1`, heights
-    /// of later signs count from there: `H2` is that of the first bounce.
+    /// Where a line, or a heading, states the height of release by a sign that counts, `Drop height
+    /// H1`, heights of later signs count from there: `H2` is that of the first bounce.
     pub(super) fn signed(&mut self, region: &Region<'_>) {
-        let Some(first) = region.drop.as_ref().map(|drop| drop.sign).filter(|sign| *sign > 0) else { return };
-        let letter = |c: &Column| c.heading.text.trim_start().starts_with(['h', 'H']);
+        let stated = region.drop.as_ref().map(|drop| drop.sign).filter(|sign| *sign > 0);
         let nth = |v: &Value| match v.at {
-            At::Nth(n) if v.what == What::Height && v.trial.is_empty() => Some(n),
+            At::Nth(n) if v.what == What::Height => Some(n),
             _ => None,
         };
-        let later: Vec<(usize, usize)> = self.values().filter_map(|(n, _, v)| Some((n, nth(v)?))).collect();
-        let counts = |&(index, n): &(usize, usize)| n > first && letter(&self.columns[index]);
-        if !later.iter().all(counts) {
+        let of_release = |c: &Column| c.heading.has(Atom::Release) && !c.heading.has(Atom::Rebound);
+        let mut columns: Vec<(usize, usize)> = self.values().filter_map(|(n, _, v)| Some((n, nth(v)?))).collect();
+        let released = columns.iter().position(|(n, _)| of_release(&self.columns[*n]) && signs(&self.columns[*n]));
+        let released = released.filter(|_| stated.is_none()).map(|at| columns.remove(at));
+        let Some(first) = stated.or(released.map(|(_, sign)| sign)) else { return };
+        // Repeats of one height bear its sign once.
+        let repeats = |c: &Column| matches!(&c.kind, Kind::Value(v) if !v.trial.is_empty());
+        let counts = |&(index, n): &(usize, usize)| {
+            let column = &self.columns[index];
+            n > first && (signs(column) && !of_release(column) || released.is_some() && repeats(column))
+        };
+        if columns.is_empty() || !columns.iter().all(counts) {
             return;
         }
-        let alone = later.len() == 1;
-        for (index, n) in later {
+        let one = columns.iter().all(|(_, n)| *n == first + 1);
+        for (index, n) in columns {
             if let Kind::Value(value) = &mut self.columns[index].kind {
-                value.at = if alone && n == first + 1 { At::Row } else { At::Nth(n - first) };
+                value.at = if one { At::Row } else { At::Nth(n - first) };
             }
+        }
+        if let Some(Kind::Value(value)) = released.map(|(index, _)| &mut self.columns[index].kind) {
+            value.at = At::Release;
         }
     }
 

@@ -7,6 +7,7 @@ use crate::error::TableError;
 use crate::finding::Note;
 use crate::read::ReadOptions;
 use crate::read::aside::Why;
+use crate::read::clause::names_rate;
 use crate::read::grid::shown;
 use crate::read::heading::{Role, Value, What};
 use crate::read::region::Region;
@@ -34,8 +35,14 @@ impl Columns {
             let moves = |by: Ordering| places.windows(2).any(|w| w[1].partial_cmp(&w[0]) == Some(by));
             moves(Ordering::Less) && moves(Ordering::Greater)
         };
+        // Frames of contacts alone tell their COR as well, but where their rates differ.
+        let named = self.all(&Kind::Frame).all(|n| self.columns[n].heading.has(Atom::Impact));
+        let counted = self.number().is_some_and(|(_, sure)| sure);
+        let rated = self.columns.iter().any(|c| names_rate(&c.heading.text));
+        let alone = read().all(|(_, _, v)| v.what == What::Unsaid) && !scaled && !timed && !rated;
+        let contacts = alone && (named || counted);
         let open = !timed && !scaled && read().any(|(n, _, _)| turns(n));
-        (open && read().all(|(n, _, v)| v.position && bare(n))).then_some(RATES[0])
+        (contacts || open && read().all(|(n, _, v)| v.position && bare(n))).then_some(RATES[0])
     }
 
     /// Numbers in a unit of time that rise from row to row, beside places and no other clock, are
@@ -89,6 +96,16 @@ impl Columns {
         // Columns that name a ball each are of these: `golf ball (frame)` beside `tennis (frame)`.
         let apart = names.iter().enumerate().all(|(n, name)| !name.is_empty() && !names[..n].contains(name));
         let several = all.len() > 1 && apart;
+        // Those that name a contact each are of one ball: `hit 1 (frame)` beside `hit 2 (frame)`.
+        let contacts: Vec<Value> = all.iter().filter_map(|&n| self.columns[n].heading.of_times()).collect();
+        let distinct = contacts.iter().enumerate().all(|(n, value)| !contacts[..n].contains(value));
+        if all.len() > 1 && contacts.len() == all.len() && distinct && !several {
+            for (n, value) in all.into_iter().zip(contacts) {
+                self.columns[n].kind = Kind::Value(value);
+                self.columns[n].unit = Some(Unit::frame(rate));
+            }
+            return Ok(());
+        }
         for (n, group) in all.into_iter().zip(names).filter(|(n, _)| several || *n == index) {
             let heading = &self.columns[n].heading;
             let between = heading.has(Atom::Between) || heading.has(Atom::Interval);
