@@ -1,6 +1,6 @@
-//! What lines of their own, and signs, say of the numbers around them: rows that name the rows below
-//! them, heights counted from the release on, frames and clocks that a title names, factors that
-//! heights were computed by.
+//! What lines of their own, and signs, say of the numbers around them: rows that name the rows
+//! below them, heights counted from the release on, frames and clocks that a title names, factors
+//! that heights were computed by.
 
 use crate::typed::{fit, trusted};
 use proptest::prelude::*;
@@ -70,7 +70,8 @@ proptest! {
         prop_assert!(report.groups().is_empty() && (report.cor().unwrap().value - e).abs() < 0.01, "{}{}", table, report);
     }
 
-    /// A release `h1` is where counting begins: `h2`, once or in several repeats, is the first rebound.
+    /// A release `h1` is where counting begins: `h2`, in one column or in several repeats, is the
+    /// first rebound.
     #[test]
     fn signs_count_from_the_release_on(e in 0.5f64..0.9, from in 0usize..3, repeats in 1usize..4) {
         let sign = |n: usize| [format!("h{}", from + n), format!("h_{}", from + n), format!("(H{})", from + n)][n % 3].clone();
@@ -85,8 +86,8 @@ proptest! {
         prop_assert!((trusted(&table) - e).abs() < 0.01, "{}", table);
     }
 
-    /// Numbers without a unit are what a title says: frames, or a clock. When the ball was let go is
-    /// then a time as well.
+    /// Numbers without a unit are what a title says: frames, or a clock. When the ball was let go
+    /// is then a time as well.
     #[test]
     fn titles_name_frames_and_clocks(e in 0.6f64..0.9, of in 0usize..6, released: bool) {
         let title = [

@@ -367,9 +367,9 @@ impl Columns {
     }
 
     /// When the ball was let go is a time, and no height, where its name counts frames, or a line
-    /// states a unit of times and none of heights, no word says that it is one, and it is before all
-    /// else in each row.
-    pub(super) fn let_go(&mut self, region: &Region<'_>) {
+    /// states a unit of times and none of heights: no word says that it is one, and in each row it
+    /// comes first.
+    fn let_go(&mut self, region: &Region<'_>) {
         let timed = matches!(region.units, (Some(_), None));
         let open = |c: &Column| c.unit.is_none() && ![Atom::Height, Atom::Position].iter().any(|a| c.heading.has(*a));
         let release = |c: &Column, v: &Value| v.what == What::Height && v.at == At::Release && open(c);
@@ -410,6 +410,7 @@ impl Columns {
 
     /// Running clocks, laps, and the heights that phyphox computes from the times.
     pub(super) fn clocks(&mut self, region: &Region<'_>) {
+        self.let_go(region);
         self.running(region);
         let numbered = self.number().is_some() || self.one(&Kind::Label).is_some();
         if self.any(What::Total, Some(At::Row))

@@ -186,7 +186,6 @@ impl Columns {
         self.signals(region, options);
         self.released(region);
         self.frames(region, fps, any)?;
-        self.let_go(region);
         self.clocks(region);
         self.scales(region, options)?;
         self.unique(region)?;

@@ -3,7 +3,6 @@
 
 use std::collections::BTreeSet;
 
-use super::super::alarms;
 use super::super::cell::{self, Cell};
 use super::super::clause;
 use super::super::heading::Heading;
@@ -86,8 +85,7 @@ impl Grid<'_> {
             && sections[0] == header + 1
             && names.len() == sections.len()
             && sections.iter().all(leads)
-            && (header + 1..self.rows()).all(all)
-            && names.iter().all(|name| alarms::named(name).is_none());
+            && (header + 1..self.rows()).all(all);
         fits.then_some((header, sections))
     }
 }
