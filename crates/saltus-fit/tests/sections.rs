@@ -113,6 +113,29 @@ proptest! {
         prop_assert!((report.cor().unwrap().value - e).abs() < 0.01, "{}{}", table, report);
     }
 
+    /// Lines of prose that list what came back from a height are drops, or bounces where they fall.
+    #[test]
+    fn lines_of_prose_list_rebounds(e in 0.5f64..0.85, words in 0usize..5, falls: bool) {
+        let (from, back, and) = [
+            ("dropped from", "it came back to ", "and"),
+            ("- released at", "", "and"),
+            ("losgelaten op", "kwam terug tot ", "en"),
+            ("aus", "", "und"),
+            ("* lâchée de", "", "et"),
+        ][words];
+        let line = |n: usize| {
+            let drop = 80.0 + 40.0 * n as f64;
+            let height = |k: usize| {
+                let power = if falls { 2 * (k as i32 + 1) } else { 2 };
+                format!("{:.1}", drop * e.powi(power) * (1.0 + off(n + 3 * k)))
+            };
+            format!("{from} {drop} cm: {back}{}, {} {and} {} cm\n", height(0), height(1), height(2))
+        };
+        let table = format!("The ball was dropped on the floor.\n\n{}\nThanks\n", (0..4).map(line).collect::<String>());
+        let report = fit(&table);
+        prop_assert!((report.cor().unwrap().value - e).abs() < 0.01, "{}{}", table, report);
+    }
+
     /// Frames of contacts tell the COR without their rate, in columns or in rows.
     #[test]
     fn contacts_need_no_rate_of_frames(e in 0.6f64..0.9, wide: bool, start in 50.0f64..500.0) {

@@ -5,6 +5,7 @@
 mod aloft;
 mod blocks;
 mod counted;
+mod drops;
 mod laps;
 mod latex;
 mod noted;
@@ -62,6 +63,7 @@ pub(super) fn table(text: &str) -> Option<String> {
         titled,
         listed,
         headed,
+        drops::table,
         patterned,
         sentences::table,
         counted::table,
