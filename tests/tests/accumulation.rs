@@ -2,8 +2,9 @@
 //! makes of a limit.
 
 use proptest::prelude::*;
+use saltus::cross::Doubt;
 use saltus::nalgebra::{Vector2, vector};
-use saltus::{Cause, Hybrid, Simulation, Stop};
+use saltus::{Cause, Certificate, Hybrid, Simulation, Stop};
 use saltus_cases::cases;
 
 /// Inflow and leaks, marks and volumes at the start.
@@ -133,9 +134,14 @@ proptest! {
         let floor = 10_f64.powf(floor);
         let loses = move |v: f64| if harmonic { v / (1.0 + v / loss) } else { v * (1.0 - loss * v.min(1.0).powf(power)) };
         let ball = hidden(floor, loses);
-        let run = Simulation::of(&ball).most_jumps(20_000).run("fly", [floor + drop, 0.0], 0.0..100.0);
-        let Ok(run) = run else { return Ok(()) };
-        prop_assert_eq!(run.end.limits.count, run.end.limits.uncertified, "{:?}", run.end);
+        let mut certificate = Certificate::new();
+        let start = [floor + drop, 0.0];
+        let end = Simulation::of(&ball).most_jumps(20_000).drive("fly", start, 0.0..100.0, &mut certificate);
+        let Ok(end) = end else { return Ok(()) };
+        prop_assert_eq!(end.limits.count, end.limits.uncertified, "{:?}", end);
+        // Who goes on from such a limit is warned.
+        let doubts = certificate.doubts().iter().filter(|doubt| doubt.evidence.doubt() == Some(Doubt::Accumulated));
+        prop_assert_eq!(doubts.count(), end.limits.count);
     }
 
     #[test]

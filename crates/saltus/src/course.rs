@@ -2,10 +2,11 @@
 
 use std::fmt;
 
-use crate::advance::{Advance, ArcEnd, Begun, later_stop};
+use crate::advance::{Advance, ArcEnd, Begun, doubt, later_stop};
 use crate::automaton::solution::Fall;
 use crate::automaton::{Automaton, Limit};
 use crate::checkpoint::{Checkpoint, CheckpointOf, Stage, StageOf};
+use crate::cross::Doubt;
 use crate::ending::{Ending, EndingOf, Limits, Options, Stats, Stop};
 use crate::error::{Error, ErrorKind, Place, Refusal, listed};
 use crate::jump::{Cause, Jump};
@@ -15,7 +16,7 @@ use crate::recent::Recent;
 use crate::state::State;
 use crate::step::{Auto, Stepper};
 use crate::ticks::Due;
-use crate::time::{Span, Time};
+use crate::time::{Span, Time, resolution};
 use crate::zeno::{Ahead, Cascade, Contraction};
 
 /// A run in progress, advanced one arc and its jump at a time: for loops that belong to somebody
@@ -440,6 +441,12 @@ impl<'a, A: Automaton, M: Stepper> Course<'a, A, M> {
             return Err(Error::new(kind, Place::new(limit, mode, None::<A::Edge>, &x)).noting(Some(note)));
         }
         at.instant = at.span.now;
+        if !ahead.certified {
+            // Up to the limit, from a spacing of time before it on at the latest.
+            let began = at.span.now.after(-remaining.max(resolution(limit)));
+            let mut unsure = |edge: A::Edge| doubt::<A>(Doubt::Accumulated, mode, edge, (began, at.span.now), observer);
+            at.recent.cycle().with(|edges: &[A::Edge]| edges.iter().for_each(|edge| unsure(*edge)));
+        }
         let Limits { count, uncertified, .. } = at.limits;
         let uncertified = uncertified + usize::from(!ahead.certified);
         at.limits = Limits { count: count + 1, uncertified, last: Some(limit) };

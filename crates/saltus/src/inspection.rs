@@ -150,6 +150,10 @@ const fn advice(why: Doubt) -> &'static str {
             "its guard changes sign without coming near zero: a pole is no crossing, a leap is taken for one. \
              Write the guard so that it is continuous"
         }
+        Doubt::Accumulated => {
+            "its jumps came so close that rounding hides whether they accumulate, and were taken to. \
+             If that matters, count time and place from nearer by"
+        }
         Doubt::Missed => {
             "its guard is below zero at the end, and no crossing was found on the way. \
              Lower Simulation::tolerance or shorten Simulation::longest_step, and compare"

@@ -3,7 +3,7 @@
 //! the one before.
 
 use proptest::prelude::*;
-use saltus::{Entry, Hybrid, Signal, Simulation, Stop};
+use saltus::{Clock, Entry, Hybrid, Polynomial, Signal, Simulation, Stop};
 use saltus_cases::cases;
 
 use crate::methods::methods;
@@ -50,6 +50,20 @@ fn puck(turn: f64, angle: f64, guard: fn(&[f64; 5]) -> f64) -> Hybrid<'static, [
         )
 }
 
+/// A ray from the rim of a disk of radius `r` at each tick, absorbed where it meets the rim again;
+/// it flies as the chord of `angle` to the tangent says, in twice its sine.
+fn rays(r: f64, turn: f64, angle: f64, period: f64, exact: bool) -> Hybrid<'static, [f64; 4]> {
+    let (c, s) = (turn.cos(), turn.sin());
+    let v = [-c * angle.sin() - s * angle.cos(), -s * angle.sin() + c * angle.cos()];
+    let straight = |x: &[f64; 4]| [x[2], x[3], 0.0, 0.0];
+    let model = Hybrid::new()
+        .mode("waits", |_t, _x: &[f64; 4]| [0.0; 4])
+        .mode("flies", move |_t, x| straight(x))
+        .clock("waits", "flies", Clock::every(period), move |_t, _x| [r * c, r * s, r * v[0], r * v[1]])
+        .edge("flies", "waits", move |_t, x| r * r - x[0] * x[0] - x[1] * x[1], |_t, x| *x);
+    if exact { model.exact("flies", move |_t, x| Polynomial::from([*x, straight(x)])) } else { model }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(cases(96)))]
 
@@ -64,6 +78,25 @@ proptest! {
         let after = second.time.since(first.time);
         // Two times of 10⁷ s, each rounded.
         prop_assert!((after - 20.0).abs() < 1e-7, "{after} s after the reset");
+    }
+
+    /// A guard that is zero as its mode is entered, but for rounding, and rises, falls where it
+    /// comes down again, however much longer the step, the arc or the span is.
+    #[test]
+    fn a_rise_from_zero_is_no_fall(
+        method in 0..4_usize, size in -3.0..7.0_f64, turn in 0.0..6.3_f64, angle in -3.0..-0.3_f64,
+        period in 0.4..2.0_f64, exact: bool,
+    ) {
+        let (r, angle, period) = (10_f64.powf(size), 10_f64.powf(angle), 10_f64.powf(period));
+        let chord = 2.0 * angle.sin();
+        let model = rays(r, turn, angle, period, exact);
+        let simulation = Simulation::of(&model).stepper(methods()[method]).tolerance(1e-9);
+        let run = simulation.run("waits", [0.0; 4], 0.0..8.5 * period).unwrap();
+        let flights: Vec<f64> = run.trajectory.jumps().chunks(2).map(|pair| pair[1].time.since(pair[0].time)).collect();
+        prop_assert_eq!(flights.len(), 8, "{:?}", run.end);
+        for flight in flights {
+            prop_assert!((flight - chord).abs() < 1e-8 * period, "{flight} for {chord}");
+        }
     }
 
     /// Also where a limit of the run ended its arc a nanometre before the wall.

@@ -378,6 +378,7 @@ impl<A: Shared, R: SceneView<A>> RecordedRun for BoundRun<A, R> {
                 Some(Doubt::Grazing) => "the error of the steps decides whether it came to that",
                 Some(Doubt::Rounding) => "rounding hides whether it came to that",
                 Some(Doubt::Discontinuous) => "what decides it is not continuous",
+                Some(Doubt::Accumulated) => "rounding hides whether its bounces end there",
                 Some(Doubt::Missed) => "it was passed by the end, and its time was not found",
                 _ => "the search for it was given up",
             };

@@ -412,7 +412,7 @@ impl<A: Automaton, M: Stepper> Advance<'_, A, M> {
 /// Tells an observer of a doubt that is of a whole arc.
 #[cold]
 #[inline(never)]
-fn doubt<A: Automaton>(
+pub(crate) fn doubt<A: Automaton>(
     why: Doubt,
     mode: A::Mode,
     edge: A::Edge,

@@ -38,6 +38,9 @@ pub enum Doubt {
     /// apart. At a pole, where it is larger the nearer it is looked at, that is no crossing; a leap
     /// is taken for one.
     Discontinuous,
+    /// Jumps were taken to accumulate though rounding hides whether they do: what lies beyond the
+    /// limit may come later, or never.
+    Accumulated,
     /// The guard is below zero at the end of the arc by more than its noise, and no crossing of it
     /// was found on the arc.
     Missed,

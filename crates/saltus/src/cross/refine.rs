@@ -100,7 +100,8 @@ impl Search<'_> {
         }
         let (mut a, mut b) = (a, b);
         let start = self.start()?;
-        if a == 0.0 && !self.spent && start >= 0.0 {
+        let leaves = a == 0.0 && (self.spent || start == 0.0 && self.rises_first(b)?);
+        if a == 0.0 && !leaves && start >= 0.0 {
             let first = self.value(self.span * AT_START)?;
             if first < 0.0 {
                 b = self.span * AT_START;
@@ -109,9 +110,9 @@ impl Search<'_> {
                 }
             }
         }
-        if a == 0.0 && self.spent {
-            // Rounding may leave the guard negative at the spent root and after it: begin where it
-            // has risen.
+        if leaves {
+            // Rounding may leave the guard negative at a root that it rises from, and after it:
+            // begin where it has risen.
             a = 0.5 * b;
             loop {
                 let value = self.value(a)?;
