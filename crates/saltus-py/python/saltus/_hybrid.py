@@ -20,6 +20,8 @@ Kept = Union[Formula, Function]
 
 METHODS = ("auto", "series", "steps", "tsit5", "dop853", "rodas5p")
 
+PLAIN = frozenset({float, int})
+
 
 class TracingWarning(UserWarning):
     """A function could not be traced: it is called in Python, a hundred times slower."""
@@ -270,6 +272,9 @@ class Hybrid:
                 says = "is no coordinate" if wrong[0] in state else "is missing from the state"
                 raise ValueError(f"{wrong[0]!r} {says}: there are {', '.join(self.names)}")
             state = [state[name] for name in self.names]
+        # Most are plain lists, and an array of two numbers takes as long to make as a short run.
+        if isinstance(state, list) and PLAIN.issuperset(map(type, state)):
+            return [float(value) for value in state]
         return [float(value) for value in np.asarray(state, dtype=float).ravel()]
 
     def _values(self, parameters: Mapping[str, Any] | None) -> dict[str, Any]:
@@ -452,7 +457,8 @@ def _options(
     if method not in METHODS:
         raise ValueError(f"{method!r} is no method: use one of {', '.join(METHODS)}")
     for name, value in (("rtol", rtol), ("atol", atol), ("longest_step", longest_step)):
-        if not isinstance(value, (float, int, np.number, type(None))) or (value is None and name == "rtol"):
+        plain = type(value) is float or (value is None and name != "rtol")
+        if not plain and not isinstance(value, (float, int, np.number)):
             raise TypeError(f"{name} is a {type(value).__name__} and no number")
     for name, count in (("most_jumps", most_jumps), ("most_steps", most_steps), ("most_bytes", most_bytes)):
         if not isinstance(count, (int, np.integer)):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -61,10 +62,15 @@ class Run:
 
     def __init__(self, hybrid: Hybrid, core: _core.Run, start: tuple[Any, ...], options: dict[str, Any]) -> None:
         self._hybrid, self._core, self._start, self._options = hybrid, core, start, options
-        self._modes = np.array([*hybrid._modes, ""])
+        self._names = (*hybrid._modes, "")
         self.stop, self.limit, self.t, mode, state, self.count = core.end()
-        self.mode = str(self._modes[mode])
+        self.mode = self._names[mode]
         self.state: Numbers = np.array(state)
+
+    @cached_property
+    def _modes(self) -> NDArray[np.str_]:
+        # Made where it is asked for: it takes as long as a short run.
+        return np.array(self._names)
 
     def __reduce__(self) -> Any:
         # A run is the same to the bit wherever it is made again.
