@@ -254,7 +254,7 @@ fn a_step_that_becomes_too_short() {
     let failed = Simulation::of(&automaton).run("fall", 1.0, 0.0..2.0).unwrap_err();
     assert_eq!(failed.error.kind(), ErrorKind::StepSize);
     assert!((failed.error.t() - 0.5).abs() < 1e-6, "{}", failed.error);
-    insta::assert_snapshot!(what(&failed.error), @"the step size fell below the spacing of time: the solution may blow up, or the flow jump: let it jump in time at a stop (Hybrid::stops), in the state between two modes, or loosen the tolerance");
+    insta::assert_snapshot!(what(&failed.error), @"the step size fell below the spacing of time: the solution may blow up, or the flow jump: let it jump in time at a stop (Hybrid::stops), in the state between two modes; or time is too coarse for the tolerance: loosen it, or count time from nearer by");
 }
 
 /// A ball under a ceiling.

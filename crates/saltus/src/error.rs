@@ -249,7 +249,7 @@ fn on_the_way(f: &mut fmt::Formatter<'_>, kind: ErrorKind, note: Option<&str>, c
         }
         ErrorKind::Unfinished => write!(f, "the run ended before it was to: {}", note.unwrap_or("?")),
         _ => f.write_str(
-            "the step size fell below the spacing of time: the solution may blow up, or the flow jump: let it jump in time at a stop (Hybrid::stops), in the state between two modes, or loosen the tolerance",
+            "the step size fell below the spacing of time: the solution may blow up, or the flow jump: let it jump in time at a stop (Hybrid::stops), in the state between two modes; or time is too coarse for the tolerance: loosen it, or count time from nearer by",
         ),
     }
 }
