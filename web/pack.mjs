@@ -2,7 +2,7 @@
 // character.
 import { execFileSync } from "node:child_process";
 import { createHash } from "node:crypto";
-import { existsSync, readFileSync, writeFileSync } from "node:fs";
+import { existsSync, readFileSync, renameSync, writeFileSync } from "node:fs";
 
 /// Sections of a WebAssembly module that hold no part of the program have the number 0, that of the
 /// names by which it is called 7.
@@ -90,8 +90,12 @@ function text(bytes) {
 function gzip(bytes, pack, beside) {
   const hash = createHash("sha256").update(bytes).update(readFileSync(pack)).digest("hex");
   const kept = `${beside}.${hash.slice(0, 16)}.gz`;
-  if (!existsSync(kept)) writeFileSync(kept, execFileSync(pack, { input: bytes, maxBuffer: Infinity }));
-  return readFileSync(kept);
+  if (existsSync(kept)) return readFileSync(kept);
+  const packed = execFileSync(pack, { input: bytes, maxBuffer: Infinity });
+  // Under its name it is whole: a build that is stopped, or another beside it, leaves no half file.
+  writeFileSync(`${kept}.${process.pid}`, packed);
+  renameSync(`${kept}.${process.pid}`, kept);
+  return packed;
 }
 
 export const packed = (file, pack) => text(gzip(bare(readFileSync(file)), pack, file));

@@ -86,6 +86,19 @@ proptest! {
         prop_assert!((trusted(&table) - e).abs() < 0.01, "{}", table);
     }
 
+    /// So are heights behind one that a line states by its sign, also in words: `Height 2`.
+    #[test]
+    fn names_count_from_a_stated_release_on(e in 0.5f64..0.9, of in 0usize..3) {
+        let name = ["h", "Height ", "H_"][of];
+        let row = |n: usize| {
+            let height = |k: i32| format!("{:.1}", 150.0 * e.powi(2 * k) * (1.0 + 0.3 * off(n + k as usize)));
+            format!("{n},{},{}\n", height(1), height(2))
+        };
+        let rows: String = (1..6).map(row).collect();
+        let table = format!("Drop height H1 = 150 cm\nTrial,{name}2 (cm),{name}3 (cm)\n{rows}");
+        prop_assert!((trusted(&table) - e).abs() < 0.01, "{}", table);
+    }
+
     /// Numbers without a unit are what a title says: frames, or a clock. When the ball was let go
     /// is then a time as well.
     #[test]

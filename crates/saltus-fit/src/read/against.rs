@@ -72,16 +72,18 @@ fn of_headings(region: &Region<'_>) -> Vec<Unit> {
     region.header.iter().filter_map(|name| Heading::parse(name).unit).filter(length).collect()
 }
 
+/// The unit of length that a word is, of several letters: one may be anything.
+fn unit(word: &Word) -> Option<Unit> {
+    Unit::parse(&word.text).filter(|unit| length(unit) && word.text.chars().count() > 1)
+}
+
 /// Whether a text names a unit of length that no heading has, and a rebound is to another one from
 /// the same height as the two units are.
 pub(super) fn mixed(region: &Region<'_>, table: &Table, text: &str) -> bool {
     let own = of_headings(region);
-    let unit = |word: &Word| match word.kind {
-        Kind::Known(_) if word.text.chars().count() > 1 => Unit::parse(&word.text).filter(length),
-        _ => None,
-    };
     let words = split(text);
-    let pairs = words.iter().filter_map(unit).flat_map(|said| own.iter().map(move |own| (said, own)));
+    let known = |word: &&Word| matches!(word.kind, Kind::Known(_));
+    let pairs = words.iter().filter(known).filter_map(unit).flat_map(|said| own.iter().map(move |own| (said, own)));
     let mut factors = pairs.filter(|(said, own)| said != *own).map(|(said, own)| said.si(1.0) / own.si(1.0)).peekable();
     if factors.peek().is_none() {
         return false;
@@ -126,10 +128,8 @@ pub(super) fn misread(region: &Region<'_>, text: &str) -> bool {
     };
     let strange = |clause: &str| {
         let words = split(clause);
-        let stated = words.windows(2).position(|pair| {
-            let unit = Unit::parse(&pair[1].text).filter(length).filter(|unit| !own.contains(unit));
-            Phrase::In.is(&folded(&pair[0].text)) && pair[1].text.chars().count() > 1 && unit.is_some()
-        });
+        let other = |word: &Word| unit(word).is_some_and(|unit| !own.contains(&unit));
+        let stated = words.windows(2).position(|pair| Phrase::In.is(&folded(&pair[0].text)) && other(&pair[1]));
         let Some(at) = stated.filter(|_| !words.iter().any(apart)) else { return false };
         let mut others = words[..at].iter().chain(&words[at + 2..]);
         others.clone().any(of_readings) || others.all(plain)

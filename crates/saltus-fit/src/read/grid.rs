@@ -109,16 +109,34 @@ impl<'a> Grid<'a> {
         Ok(())
     }
 
-    /// Writes every cell anew, by its row and its column.
-    fn rewrite(&mut self, mut write: impl FnMut(&Self, usize, usize, &mut String)) {
+    /// Lays the cells of every row anew, however many: `lay` hands them on one by one.
+    fn relay(&mut self, mut lay: impl FnMut(&Self, usize, &mut dyn FnMut(&str))) {
         let (mut cells, mut ends) = (String::with_capacity(self.cells.len()), Vec::with_capacity(self.ends.len()));
+        let small = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
+        let mut firsts = Vec::with_capacity(self.rows());
         for row in 0..self.rows() {
-            for column in 0..self.width(row) {
-                write(self, row, column, &mut cells);
-                ends.push(u32::try_from(cells.len()).unwrap_or(u32::MAX));
-            }
+            firsts.push(small(ends.len()));
+            lay(self, row, &mut |cell| {
+                cells.push_str(cell);
+                ends.push(small(cells.len()));
+            });
+        }
+        for (row, first) in self.rows.iter_mut().zip(firsts) {
+            row.first = first;
         }
         (self.cells, self.ends) = (cells, ends);
+    }
+
+    /// Writes every cell anew, by its row and its column.
+    fn rewrite(&mut self, mut write: impl FnMut(&Self, usize, usize, &mut String)) {
+        let mut cell = String::new();
+        self.relay(|grid, row, push| {
+            for column in 0..grid.width(row) {
+                cell.clear();
+                write(grid, row, column, &mut cell);
+                push(&cell);
+            }
+        });
     }
 
     /// Whether a comma separates the cells, so that it is no decimal mark.

@@ -125,8 +125,8 @@ pub(super) fn stated(region: &Region<'_>) -> Stated {
     found.drop = found.drop.or(wrapped).or_else(commented);
     found.frames |= region.view.grid.comments().take(ROWS).any(|(_, text)| counts_frames(text));
     // Numbers of frames that a title speaks of are times, where it names no other quantity.
-    let commented = || region.view.grid.comments().take(ROWS).find_map(|(_, text)| frame_rate(text));
-    let fps = found.fps.map(|(fps, _)| fps).or_else(commented);
+    let in_comments = || region.view.grid.comments().take(ROWS).find_map(|(_, text)| frame_rate(text));
+    let fps = found.fps.map(|(fps, _)| fps).or_else(in_comments);
     if let (true, Some(fps), (None, None)) = (found.frames, fps, found.units) {
         found.units.0 = Some(Unit::frame(fps));
     }

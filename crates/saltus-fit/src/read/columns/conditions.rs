@@ -45,7 +45,7 @@ impl Columns {
     pub(super) fn signed(&mut self, region: &Region<'_>) {
         let stated = region.drop.as_ref().map(|drop| drop.sign).filter(|sign| *sign > 0);
         let nth = |v: &Value| match v.at {
-            At::Nth(n) if v.what == What::Height => Some(n),
+            At::Nth(n) if v.what == What::Height && (stated.is_none() || v.trial.is_empty()) => Some(n),
             _ => None,
         };
         let of_release = |c: &Column| c.heading.has(Atom::Release) && !c.heading.has(Atom::Rebound);
@@ -55,9 +55,14 @@ impl Columns {
         let Some(first) = stated.or(released.map(|(_, sign)| sign)) else { return };
         // Repeats of one height bear its sign once.
         let repeats = |c: &Column| matches!(&c.kind, Kind::Value(v) if !v.trial.is_empty());
+        let letter = |c: &Column| c.heading.text.trim_start().starts_with(['h', 'H']);
         let counts = |&(index, n): &(usize, usize)| {
             let column = &self.columns[index];
-            n > first && (signs(column) && !of_release(column) || released.is_some() && repeats(column))
+            let later = match stated {
+                Some(_) => letter(column),
+                None => signs(column) && !of_release(column) || repeats(column),
+            };
+            n > first && later
         };
         if columns.is_empty() || !columns.iter().all(counts) {
             return;

@@ -39,10 +39,9 @@ impl Columns {
         let named = self.all(&Kind::Frame).all(|n| self.columns[n].heading.has(Atom::Impact));
         let counted = self.number().is_some_and(|(_, sure)| sure);
         let rated = self.columns.iter().any(|c| names_rate(&c.heading.text));
-        let alone = read().all(|(_, _, v)| v.what == What::Unsaid) && !scaled && !timed && !rated;
-        let contacts = alone && (named || counted);
-        let open = !timed && !scaled && read().any(|(n, _, _)| turns(n));
-        (contacts || open && read().all(|(n, _, v)| v.position && bare(n))).then_some(RATES[0])
+        let contacts = || (named || counted) && !rated && read().all(|(_, _, v)| v.what == What::Unsaid);
+        let film = || read().any(|(n, _, _)| turns(n)) && read().all(|(n, _, v)| v.position && bare(n));
+        (!timed && !scaled && (contacts() || film())).then_some(RATES[0])
     }
 
     /// Numbers in a unit of time that rise from row to row, beside places and no other clock, are
@@ -97,9 +96,10 @@ impl Columns {
         let apart = names.iter().enumerate().all(|(n, name)| !name.is_empty() && !names[..n].contains(name));
         let several = all.len() > 1 && apart;
         // Those that name a contact each are of one ball: `hit 1 (frame)` beside `hit 2 (frame)`.
-        let contacts: Vec<Value> = all.iter().filter_map(|&n| self.columns[n].heading.of_times()).collect();
+        let contact = |&n: &usize| self.columns[n].heading.of_times();
+        let contacts: Vec<Value> = if several { Vec::new() } else { all.iter().filter_map(contact).collect() };
         let distinct = contacts.iter().enumerate().all(|(n, value)| !contacts[..n].contains(value));
-        if all.len() > 1 && contacts.len() == all.len() && distinct && !several {
+        if contacts.len() > 1 && contacts.len() == all.len() && distinct {
             for (n, value) in all.into_iter().zip(contacts) {
                 self.columns[n].kind = Kind::Value(value);
                 self.columns[n].unit = Some(Unit::frame(rate));

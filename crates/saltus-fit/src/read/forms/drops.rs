@@ -4,9 +4,7 @@
 
 use super::super::cell::length;
 use super::super::heading::Heading;
-use super::super::phrases::Phrase;
 use super::super::units::Unit;
-use super::super::vocabulary::folded;
 use super::super::words::without_brackets;
 use super::{Part, parts};
 
@@ -63,18 +61,15 @@ pub(super) fn table(text: &str) -> Option<String> {
     Some(text.lines().enumerate().map(spelt).collect::<Vec<_>>().join("\n") + "\n")
 }
 
-/// The heights of a line; the unit of the last number is that of those
-/// before it that have none, and else that of the release.
+/// The heights of a line; the unit of the last number is that of those before it that have none,
+/// and that of the release where it has none itself.
 fn of_line(line: &str) -> Option<Line> {
     let (name, list) = line.trim().trim_start_matches(['-', '*', '•', ' ']).split_once(": ")?;
     let name = without_brackets(name);
     let [Part { words, number: release }] = *parts(&name).0.as_slice() else { return None };
     let (found, behind) = parts(list);
     let (first, others) = found.split_first()?;
-    let joins = |part: &Part<'_>| {
-        let word = part.words.trim_matches([' ', ',', ';', '/']);
-        word.is_empty() || Phrase::And.is(&folded(word))
-    };
+    let joins = |part: &Part<'_>| part.joins(&[' ', ',', ';', '/']);
     let turned = |words: &str| Heading::parse(words).turns_readings();
     if turned(words) || turned(first.words) || !behind.trim_matches(['.', ' ']).is_empty() || !others.iter().all(joins)
     {

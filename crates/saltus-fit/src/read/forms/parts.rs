@@ -3,6 +3,7 @@
 use super::super::cell::length;
 use super::super::phrases::Phrase;
 use super::super::units::Unit;
+use super::super::vocabulary::folded;
 
 /// Marks between one height and the next.
 const ARROWS: [&str; 9] = ["-->", "->", "=>", ">", "→", "⟶", "⇒", "➔", "➜"];
@@ -16,6 +17,14 @@ pub(super) fn arrows() -> impl Iterator<Item = &'static str> {
 pub(super) struct Part<'a> {
     pub(super) words: &'a str,
     pub(super) number: &'a str,
+}
+
+impl Part<'_> {
+    /// Whether its words do nothing but join its number to the one before, by a word or by `marks`.
+    pub(super) fn joins(&self, marks: &[char]) -> bool {
+        let word = self.words.trim_matches(marks);
+        word.is_empty() || Phrase::And.is(&folded(word))
+    }
 }
 
 /// The numbers of a line, each with the words before it, and the words behind the last.

@@ -82,7 +82,7 @@ fn drops(text: &str) -> Option<Vec<Drop>> {
                         rose = true;
                     }
                     // `it came back to 86 cm, 88 cm and 87 cm`: again from there.
-                    Role::Other if rose && joins(part.words) => {
+                    Role::Other if rose && part.joins(&[' ', ',', '\n']) => {
                         let Drop { line, heights: [release, last], .. } = drops.last()?;
                         // Those that fall may be of bounces one after the other.
                         length(part.number).zip(length(last)).filter(|(next, last)| *next > LEVEL * last)?;
@@ -111,12 +111,6 @@ fn drops(text: &str) -> Option<Vec<Drop>> {
     }
     balls.retain(|name| !name.is_empty());
     (balls.len() < 2).then_some(drops)
-}
-
-/// Whether words do nothing but join a length to the one before.
-fn joins(words: &str) -> bool {
-    let word = words.trim_matches([' ', ',', '\n']);
-    word.is_empty() || Phrase::And.is(&folded(word))
 }
 
 /// The lines between blank ones, with the number of the first.

@@ -30,27 +30,16 @@ impl Grid<'_> {
         let names: Vec<String> = sections.iter().map(|&row| self.named(row)).collect();
         let heading = heading(&names.iter().map(String::as_str).collect::<Vec<_>>());
         let width = (0..self.rows()).map(|row| self.width(row)).max().unwrap_or(0);
-        let (mut cells, mut ends) = (String::with_capacity(self.cells.len()), Vec::with_capacity(self.ends.len()));
-        let mut rows = Vec::with_capacity(self.rows());
-        for row in 0..self.rows() {
-            rows.push(u32::try_from(ends.len()).unwrap_or(u32::MAX));
+        self.relay(|grid, row, push| {
             let section = sections.iter().rposition(|&of| of < row);
             let name = match section {
-                _ if sections.contains(&row) => None,
+                _ if sections.contains(&row) => return,
                 None => (row == header).then_some(heading),
                 Some(of) => Some(names[of].as_str()),
             };
-            let count = if sections.contains(&row) { 0 } else { name.map_or(self.width(row), |_| width) };
-            let before = (0..count).map(|column| self.cell(row, column));
-            for cell in before.chain(name) {
-                cells.push_str(cell);
-                ends.push(u32::try_from(cells.len()).unwrap_or(u32::MAX));
-            }
-        }
-        for (row, first) in self.rows.iter_mut().zip(rows) {
-            row.first = first;
-        }
-        (self.cells, self.ends) = (cells, ends);
+            let count = name.map_or(grid.width(row), |_| width);
+            (0..count).map(|column| grid.cell(row, column)).chain(name).for_each(push);
+        });
     }
 
     /// The name in a row that holds one cell of words, without what a height of release is stated

@@ -99,32 +99,23 @@ impl Grid<'_> {
         for (column, parted) in parted.iter_mut().enumerate().filter(|(_, parted)| parted.is_none()) {
             *parted = alike(column).then_some((name, count));
         }
-        let (mut cells, mut ends) = (String::new(), Vec::new());
-        let mut rows: Vec<u32> = Vec::new();
-        for row in 0..self.rows() {
-            rows.push(u32::try_from(ends.len()).unwrap_or(u32::MAX));
-            for (column, parted) in parted.iter().enumerate().take(self.width(row)) {
-                let cell = self.cell(row, column);
+        self.relay(|grid, row, push| {
+            for (column, parted) in parted.iter().enumerate().take(grid.width(row)) {
+                let cell = grid.cell(row, column);
                 let count = parted.map_or(1, |(_, count)| count);
                 let named = parted.is_some_and(|(name, _)| name == row);
-                let found = if named { None } else { readings(cell, self.thousands()).filter(|_| count > 1) };
+                let found = if named { None } else { readings(cell, grid.thousands()).filter(|_| count > 1) };
                 for n in 0..count {
                     match &found {
-                        Some(found) => cells.push_str(found.get(n).map_or("", |part| part)),
-                        None if named => cells.push_str(&format!("trial {}: {cell}", n + 1)),
-                        None if n == 0 => cells.push_str(cell),
-                        None => {}
+                        Some(found) => push(found.get(n).map_or("", |part| part)),
+                        None if named => push(&format!("trial {}: {cell}", n + 1)),
+                        None => push(if n == 0 { cell } else { "" }),
                     }
-                    ends.push(u32::try_from(cells.len()).unwrap_or(u32::MAX));
                 }
             }
-        }
+        });
         self.origin =
             (0..width).flat_map(|n| std::iter::repeat_n(n, parted[n].map_or(1, |(_, count)| count))).collect();
-        for (row, first) in self.rows.iter_mut().zip(rows) {
-            row.first = first;
-        }
-        (self.cells, self.ends) = (cells, ends);
     }
 
     /// Whether cells of a column hold several readings below a name that is understood: the row of
