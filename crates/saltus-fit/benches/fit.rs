@@ -59,6 +59,17 @@ fn study(bencher: Bencher) {
     bencher.bench(|| run(&Fit::new(), text));
 }
 
+/// With what would settle it, as the tool and the Python package do it.
+#[divan::bench]
+fn study_advised(bencher: Bencher) {
+    let text = include_str!("../../../examples/data/squash-on-cement.csv");
+    bencher.bench(|| {
+        let table = Table::parse("bench.csv", text.as_bytes(), &ReadOptions::default()).unwrap();
+        let fit = Fit::new();
+        fit.advised(&table, fit.run(&table).unwrap(), None).unwrap()
+    });
+}
+
 #[divan::bench]
 fn thirty_launches_by_huber(bencher: Bencher) {
     let (text, fit) = (launches(30, 20), Fit::new().sigma_time(0.001).losses(&[Loss::Huber]));

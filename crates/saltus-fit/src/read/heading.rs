@@ -3,7 +3,6 @@
 
 mod flights;
 mod inside;
-mod kept;
 mod meaning;
 mod rates;
 mod repeats;
@@ -11,6 +10,7 @@ mod signs;
 
 use super::aside::Why;
 use super::end::names_end;
+use super::kept::{Kept, kept};
 use super::units::{Dimension, Scale, Unit};
 use super::vocabulary::{Atom, folded, misspelt, narrow, short_for};
 use super::words::{Kind, Word, numbers, split, unaddressed};
@@ -155,6 +155,12 @@ pub(super) struct Heading {
 }
 
 impl Heading {
+    /// What a heading says.
+    pub(super) fn parse(text: &str) -> Self {
+        static KEPT: Kept<Heading> = Kept::new(Default::default);
+        kept(&KEPT, text, Self::apart)
+    }
+
     /// Takes a heading apart.
     fn apart(text: &str) -> Self {
         let (name, plain) = (text.trim(), narrow(&unaddressed(text)));

@@ -25,6 +25,7 @@ mod heading;
 mod heard;
 mod json;
 mod judged;
+mod kept;
 mod lasting;
 mod layout;
 mod limits;
