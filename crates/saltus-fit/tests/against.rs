@@ -195,4 +195,95 @@ proptest! {
             prop_assert!(!remarked(&fit(&table(&said))), "{}{}", table(&said), fit(&table(&said)));
         }
     }
+
+    /// Where a table has one rebound a drop, a remark that counts a later one is a doubt; the count
+    /// of trials and balls, what is denied, and a second of time are none.
+    #[test]
+    fn a_later_rebound_is_doubted(e in 0.5f64..0.85, wide: bool) {
+        let table = |said: &str| {
+            let row = |n: usize| {
+                let drop = 80 + 20 * n;
+                let rebound = |n: usize| format!("{:.1}", drop as f64 * e * e * (1.0 + off(n)));
+                if wide { format!("{drop},{},{}\n", rebound(n), rebound(n + 3)) } else { format!("{drop},{}\n", rebound(n)) }
+            };
+            let header = if wide { "drop height (cm),trial 1 rebound (cm),trial 2 rebound (cm)" } else { "drop height (cm),rebound height (cm)" };
+            format!("{said}\n{header}\n{}", (0..5).map(row).collect::<String>())
+        };
+        for said in [
+            "The first bounce was too fast so we nearly always took the second",
+            "heights are of the second bounce",
+            "read after the 3rd rebound",
+            "Höhe nach dem zweiten Aufprall",
+            "hauteur du deuxième rebond",
+            "il primo rimbalzo era veloce quindi abbiamo preso il secondo",
+            "altura del segundo rebote",
+            "hoogte van de tweede stuit",
+            "wysokość drugiego odbicia",
+        ] {
+            prop_assert!(remarked(&fit(&table(said))), "{}{}", table(said), fit(&table(said)));
+        }
+        for said in [
+            "The second trial of each bounce is beside the first",
+            "rebounds read by the second person",
+            "not the second bounce",
+            "bounces filmed at 240 frames per second",
+            "the first bounce of each drop",
+        ] {
+            prop_assert!(!remarked(&fit(&table(said))), "{}{}", table(said), fit(&table(said)));
+        }
+    }
+
+    /// A rule with two scales, one of them in a unit that no heading has, is a doubt unless it is
+    /// stated which was read, wherever that stands: also behind the names of the columns.
+    #[test]
+    fn a_rule_of_two_scales_is_doubted(e in 0.5f64..0.85, place in 0usize..3) {
+        let table = |said: &str| {
+            let rows: String = (0..5).map(|n| format!("{},{:.1}\n", 80 + 20 * n, f64::from(80 + 20 * n) * e * e * (1.0 + off(n as usize)))).collect();
+            let header = "drop (cm),rebound (cm)";
+            match place {
+                0 => format!("\"{said}\"\n{header}\n{rows}"),
+                1 => format!("{header},,\"{said}\"\n{rows}"),
+                _ => format!("{header}\n{rows}\n\"{said}\"\n"),
+            }
+        };
+        for said in [
+            "rebound: tape (cm on one side, inches on the other)",
+            "drop by the long rule, bounce by a tape that has cm and inches",
+            "Rücksprung mit einem Maßband mit cm und Zoll",
+            "Ball thrown down from the rail",
+        ] {
+            prop_assert!(remarked(&fit(&table(said))), "{}{}", table(said), fit(&table(said)));
+        }
+        for said in [
+            "tape with cm and inches",
+            "rebounds by a tape with cm and inches, measured with the cm side",
+            "rebounds by tape in cm",
+            "read on a metre rule in cm",
+        ] {
+            prop_assert!(!remarked(&fit(&table(said))), "{}{}", table(said), fit(&table(said)));
+        }
+    }
+
+    /// To how much readings agree by chance is by the digits they were written with: in inches and
+    /// by energies as in centimetres.
+    #[test]
+    fn digits_in_any_unit_are_counted(e in 0.6f64..0.85, unit in 0usize..4, high in 60usize..90) {
+        let unit = ["in", "cm", "mm", "mJ"][unit];
+        let (drop, rebound) = if unit == "mJ" {
+            ("kinetic energy before impact (mJ)", "kinetic energy after impact (mJ)")
+        } else {
+            ("drop height", "rebound height")
+        };
+        let name = |name: &str| if unit == "mJ" { name.to_owned() } else { format!("{name} ({unit})") };
+        let table = |digits: usize| {
+            let row = |ball: usize, n: usize| {
+                format!("{},{high},{:.digits$}\n", ["golf", "marble"][ball], high as f64 * e * e * (1.0 + off(n)))
+            };
+            let rows = (0..2).flat_map(|ball| (0..5).map(move |n| (ball, n)));
+            format!("ball,{},{}\n{}", name(drop), name(rebound), rows.map(|(ball, n)| row(ball, n)).collect::<String>())
+        };
+        let copied = |report: &Report| doubts(report).iter().any(|doubt| matches!(doubt, Doubt::Copied { .. }));
+        prop_assert!(!copied(&fit(&table(0))), "{}{}", table(0), fit(&table(0)));
+        prop_assert!(copied(&fit(&table(3))), "{}{}", table(3), fit(&table(3)));
+    }
 }

@@ -55,6 +55,7 @@ fn files() -> Vec<PathBuf> {
         "read/phrases.rs",
         "read/programs.rs",
         "read/programs/bare.rs",
+        "read/region/keys.rs",
         "read/title.rs",
         "sound/ears.rs",
         "sound/fade.rs",

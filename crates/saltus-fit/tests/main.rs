@@ -16,6 +16,7 @@ mod abroad;
 mod against;
 mod around;
 mod batches;
+mod beside;
 mod candidates;
 mod conditions;
 mod everyday;

@@ -17,9 +17,9 @@ pub(crate) const LOSSLESS: f64 = 0.995;
 /// Only glass and steel keep more of their speed: readings that agree on more have to show a loss.
 pub(crate) const HARDEST: f64 = 0.975;
 
-/// A 95 % interval wider than this says hardly anything: of the CORs of all balls that it leaves
-/// out less than half.
-pub(crate) const VAGUE: f64 = 0.5;
+/// A 95 % interval wider than this says hardly anything: balls of sports keep between half and nine
+/// tenths of their speed, and it leaves out less than half of these.
+pub(crate) const VAGUE: f64 = 0.25;
 
 /// A lens moves the ends of the path by this part of half the path, as a standard deviation: phones
 /// by one to two hundredths of the picture's edge, wide cameras by five and more.

@@ -4,12 +4,12 @@
 use std::collections::HashMap;
 
 use super::cell::Cell;
-use super::clause::clauses;
+use super::clause::{clauses, frame_rate};
 use super::columns::{Column, Columns};
 use super::datum::Of;
 use super::grid::shown;
 use super::heading::{At, DropHeight, Heading, Role, Value, What};
-use super::phrases::{Phrase, denies};
+use super::phrases::{DENIED, Phrase, denies};
 use super::region::Region;
 use super::said::ALIKE;
 use super::units::{Dimension, Scale, Unit};
@@ -183,4 +183,50 @@ pub(super) fn repeated(region: &Region<'_>, columns: &Columns) -> Option<Doubt> 
     let other = low > 1.0 || high < 1.0;
     (steps.len() + 1 >= ALIKE && low <= high && other)
         .then(|| Doubt::Repeated { column: shown(&of_drop.heading.text), of: shown(&of_rebound.heading.text) })
+}
+
+/// Whether a clause of a text counts a rebound that is not the first where the table has no other:
+/// `we nearly always took the second`; but not one of a trial or a ball, nor what it denies.
+pub(super) fn of_a_later(table: &Table, text: &str) -> bool {
+    let mut readings = table.trials.iter().flat_map(|trial| &trial.readings);
+    let later = readings.any(|reading| reading.bounce > 1 || reading.time.is_some())
+        || table.trials.iter().any(|trial| trial.timed.is_some());
+    let words = split(text);
+    let rebounds = |word: &Word| word.is(Atom::Rebound) || word.is(Atom::Impact);
+    if later || !words.iter().any(rebounds) || frame_rate(text).is_some() {
+        return false;
+    }
+    // Behind a number it is a unit of time.
+    let unit = |at: usize| at > 0 && matches!(words[at - 1].kind, Kind::Number(_));
+    let counts = |at: usize| match words[at].kind {
+        Kind::Ordinal(place) => place > 1,
+        Kind::Known(atoms) => atoms.iter().any(|atom| matches!(atom, Atom::Ordinal(place) if *place > 1)),
+        _ => false,
+    };
+    (0..words.len()).any(|at| {
+        let denied = words[at.saturating_sub(DENIED)..at].iter().any(|word| denies(&folded(&word.text)));
+        let next = words[at + 1..].iter().find(|word| !matches!(word.kind, Kind::Known([Atom::Filler])));
+        counts(at) && !unit(at) && !denied && next.is_none_or(rebounds)
+    })
+}
+
+/// Whether a text speaks of a tool for rebounds that bears two scales, one of which no heading has,
+/// and does not say which was read: `bounce: tape, cm on one side, inches on the other`. One for
+/// releases as well gives the same ratios in either unit.
+pub(super) fn of_two_scales(region: &Region<'_>, text: &str) -> bool {
+    let own = of_headings(region);
+    let words = split(text);
+    let apart = |at: usize| {
+        Phrase::In.is(&folded(&words[at].text)) || words.get(at + 1).is_some_and(|next| next.is(Atom::Tool))
+    };
+    let named = |at: usize| unit(&words[at]).filter(|_| !apart(at));
+    let units: Vec<Unit> = (0..words.len()).filter_map(named).collect();
+    let both = units.iter().any(|unit| own.contains(unit)) && units.iter().any(|unit| !own.contains(unit));
+    let chosen = |clause: &str| {
+        let words = split(clause);
+        let read = |word: &Word| word.is(Atom::Read) || Phrase::Used.is(&folded(&word.text));
+        words.iter().any(read) && words.iter().filter_map(unit).all(|unit| own.contains(&unit))
+    };
+    let rebounds = words.iter().any(|word| word.is(Atom::Rebound) || word.is(Atom::Impact));
+    both && rebounds && words.iter().any(|word| word.is(Atom::Tool)) && !clauses(text).any(chosen)
 }

@@ -188,12 +188,18 @@ impl<'a> Remark<'a> {
 
 /// The remarks in and around the tables of a text.
 pub(super) fn remarks<'a>(grid: &'a Grid<'_>, regions: &[Region<'_>]) -> Vec<Remark<'a>> {
-    let headers: HashSet<usize> = regions.iter().map(|region| region.header_row).collect();
     let lines =
         regions.iter().enumerate().flat_map(|(n, region)| region.aside.iter().map(move |aside| (aside.line, n)));
     let above: HashMap<Option<u64>, usize> = lines.collect();
-    let rows = (0..grid.rows().min(ROWS)).filter(|row| !headers.contains(row));
-    let cells = rows.flat_map(|row| (0..grid.width(row)).map(move |n| (grid.cell(row, n), Some(grid.line(row)))));
+    // A name is of what stands below it, a remark of nothing.
+    let names = |row: usize, n: usize| {
+        regions.iter().any(|region| {
+            let (row, n) = if region.view.across { (n, row) } else { (row, n) };
+            row == region.header_row && region.rows.iter().any(|&below| !region.view.cell(below, n).is_empty())
+        })
+    };
+    let cells = (0..grid.rows().min(ROWS)).flat_map(|row| (0..grid.width(row)).map(move |n| (row, n)));
+    let cells = cells.filter(|&(row, n)| !names(row, n)).map(|(row, n)| (grid.cell(row, n), Some(grid.line(row))));
     // A word by itself names something: a ball, an event, a unit.
     let cells = cells.filter(|(cell, _)| words(cell) > 1);
     let texts = cells.chain(grid.comments().take(ROWS).map(|(line, text)| (text, Some(line))));
@@ -233,6 +239,8 @@ pub(super) fn doubt((n, region): (usize, &Region<'_>), table: &Table, remarks: &
         () if pooled(remark) => Some(Change::Changed),
         () if against::misread(region, remark.text) => Some(Change::Shifted),
         () if against::mixed(region, table, remark.text) => Some(Change::Unsure),
+        () if against::of_two_scales(region, remark.text) => Some(Change::Unsure),
+        () if against::of_a_later(table, remark.text) => Some(Change::Counted),
         () => None,
     };
     let by_numbers = |remark: &Remark<'_>| {

@@ -4,12 +4,14 @@ use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 use super::grid::shown;
-use super::written::step;
 use super::{Event, Reading, Table, Trial};
 use crate::finding::{Doubt, Lines, Named, Repair, Warning};
 
 /// Where balls are dropped from, in metres.
 const USUAL: std::ops::RangeInclusive<f64> = 0.02..=20.0;
+
+/// Nothing is read finer, m and s: what is left of a multiple below it is rounding in binary.
+const FINEST: f64 = 1e-9;
 
 /// How much drops of the same ball from the same height differ at the least, as a part of the
 /// reading.
@@ -106,10 +108,23 @@ fn numbers(trial: &Trial) -> impl Iterator<Item = (bool, f64)> + Clone + '_ {
         .filter(|(_, x)| *x > 0.0)
 }
 
-/// To how much heights and times were read.
+/// To how much heights and times were read, m and s: in whatever unit they were written, they are
+/// multiples of it.
 fn steps(trials: &[Trial]) -> [f64; 2] {
-    let finest = |timed: bool| step(trials.iter().flat_map(numbers).filter(move |(t, _)| *t == timed).map(|(_, x)| x));
-    [finest(false), finest(true)]
+    let read = |timed: bool| trials.iter().flat_map(numbers).filter(move |(t, _)| *t == timed).map(|(_, x)| x);
+    [false, true].map(|timed| read(timed).fold(0.0, common).max(FINEST))
+}
+
+/// The largest step of which two numbers are multiples (Euclid's algorithm).
+fn common(one: f64, other: f64) -> f64 {
+    let largest = one.max(other);
+    let (mut a, mut b) = (largest, one.min(other));
+    while b > FINEST {
+        (a, b) = (b, (a - (a / b).round() * b).abs());
+    }
+    // As exact as the number is that it is a part of: what rounding moved it by grows from pair to
+    // pair.
+    largest / (largest / a).round()
 }
 
 /// How many powers of ten it is against one that another trial has the same readings.

@@ -262,7 +262,8 @@ pub(super) fn of_clauses(text: &str) -> Option<Unit> {
     let parts = || clauses(text).chain(dashed(text)).chain(clauses(text).flat_map(dashed)).find_map(named);
     let begins = || std::iter::once(text).chain(dashed(text)).find_map(begun);
     let counted = || clauses(text).chain(dashed(text)).find_map(since);
-    unit(text).or_else(parts).or_else(of_brackets).or_else(ends).or_else(begins).or_else(counted)
+    let bare = || text.contains('(').then(|| of_clauses(&without_brackets(text))).flatten();
+    unit(text).or_else(parts).or_else(of_brackets).or_else(ends).or_else(begins).or_else(counted).or_else(bare)
 }
 
 /// The unit of a clock that a clause begins with: `seconds from the start of the recording`.
@@ -359,7 +360,10 @@ fn of_all(clause: &str) -> Option<Unit> {
     let unit = Unit::parse(unit.trim_matches(['(', ')'])).filter(|unit| !unit.unscaled())?;
     let plain = |word: &Word| match word.kind {
         Kind::Known(atoms) => atoms.iter().all(|atom| {
-            matches!(atom, Atom::Filler | Atom::Height | Atom::Time | Atom::Read | Atom::Number | Atom::Measure)
+            matches!(
+                atom,
+                Atom::Filler | Atom::Height | Atom::Time | Atom::Speed | Atom::Read | Atom::Number | Atom::Measure
+            )
         }),
         _ => false,
     };

@@ -4,6 +4,7 @@ mod grouped;
 mod repeated;
 mod sections;
 mod unfold;
+mod unquoted;
 
 use csv::{ReaderBuilder, StringRecord};
 use saltus_bounce::units::Quantity;
@@ -54,6 +55,7 @@ impl<'a> Grid<'a> {
         let (cells, ends, rows, origin) = (String::new(), Vec::new(), Vec::new(), Vec::new());
         let mut grid = Self { name, tab, text, delimiter, cells, ends, rows, origin, decimal: false, grouped: None };
         grid.fill()?;
+        grid.unquoted();
         grid.repeat();
         grid.ungroup();
         grid.decimal = grid.comma() && grid.decimal_commas();

@@ -250,7 +250,8 @@ fn gathered(name: &str, node: &Node, above: &str, found: &mut Vec<Part>) {
         let letter = |(name, cell): &(&String, &str)| {
             cell.chars().count() == 1 && matches!(Heading::parse(name).meaning, Meaning::Trial)
         };
-        let called = cells().find(|(_, cell)| words(cell)).map(|named| match named {
+        let remark = |name: &str| Heading::parse(name).has(Atom::Note);
+        let called = cells().find(|(name, cell)| words(cell) && !remark(name)).map(|named| match named {
             (name, cell) if letter(&named) => format!("{name} {cell}"),
             (_, cell) => cell.to_owned(),
         });

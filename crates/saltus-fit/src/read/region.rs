@@ -2,7 +2,9 @@
 
 mod counted;
 mod header;
+mod keys;
 mod legend;
+mod own_lines;
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -15,8 +17,9 @@ use super::heading::{DropHeight, Heading};
 use super::units::{Dimension, Unit};
 use crate::error::TableError;
 pub(super) use header::repeated;
-use header::{Header, SHARE, VALUE, both, headers, names_only, of_units, remark};
+use header::{Header, SHARE, VALUE, both, headers, names_only, remark};
 use legend::Legend;
+use own_lines::of_units;
 
 /// One table of a text.
 #[derive(Clone)]
@@ -167,6 +170,7 @@ pub(super) fn tables<'a>(view: View<'a>) -> Vec<Region<'a>> {
         let mut region = Region::new(view, header.names, header.at, (header.below..end).collect());
         region.aside = above.into_iter().chain(remarks).collect();
         units_below(&mut region);
+        keys::leave(&mut region);
         found.push(region);
         from = header.below;
     }

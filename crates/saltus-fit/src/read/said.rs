@@ -194,7 +194,8 @@ pub(super) fn unsaid(region: &Region<'_>, columns: &Columns, options: &ReadOptio
     let told = |text: &str| says(text) || ball && hits_floor(text) || fast && met(text);
     let column = open.map(|(_, column, _)| column).or_else(parts).filter(|_| !texts(region).any(told))?;
     let ball = || texts(region).any(|text| is_of_a_ball(text) || Ball::named(text).is_some()) || filed(region);
-    let bounces = ball() && repeats(region, columns, KEPT) || understood(region) && shrinks(region, columns);
+    let bounces =
+        ball() && repeats(region, columns, KEPT) || (ball() || understood(region)) && shrinks(region, columns);
     (!bounces).then(|| Doubt::Unsaid { column: shown(&column.heading.text) })
 }
 

@@ -9,7 +9,7 @@ use crate::quantity::{Readings, Source, Sourced};
 use crate::read::Trial;
 use crate::solve::kind::{Kind, one_kind};
 use crate::solve::one::OneKind;
-use crate::statistics::{REJECT, SURELY};
+use crate::statistics::{REJECT, SURELY, rounding};
 
 /// Readings whose scatter is more than this part of the largest of them hardly show a bounce.
 const LOUD: f64 = 0.1;
@@ -53,7 +53,9 @@ fn unmoved(evidence: &Evidence, cor: f64) -> Option<FindingKind> {
     // If one COR were right, the two sums would differ by this, with a standard deviation of twice
     // its root times the error of a rebound.
     let moves = sum(&|pair| cor * cor * (pair.0 - release));
-    let error = (about_mean / (count - 1.0)).sqrt();
+    // Rebounds that are rounded to the same number scatter less than they are read to.
+    let read_to = rounding(&pairs.iter().map(|pair| pair.1).collect::<Vec<_>>());
+    let error = (about_mean / (count - 1.0)).sqrt().max(read_to);
     let low_m = pairs.iter().map(|pair| pair.0).fold(f64::INFINITY, f64::min);
     let high_m = pairs.iter().map(|pair| pair.0).fold(0.0, f64::max);
     (pairs.len() > 2 && about_mean < about_cor && moves.sqrt() > 2.0 * SURELY * error).then_some(FindingKind::Unmoved {

@@ -136,7 +136,9 @@ pub(crate) fn allow(judgement: &mut Judgement, fits: &Fits<'_>, (known, stated):
         Some(judged(&fits)?.value - before.value).filter(|shift| shift.is_finite())
     };
     let mut shares = Vec::new();
-    let zero_m = if has(fits.table, Readings::Heights) { stated.zero() } else { 0.0 };
+    // Speeds are read on no scale of heights.
+    let placed = has(fits.table, Readings::Heights) && !fits.table.metadata.speeds;
+    let zero_m = if placed { stated.zero() } else { 0.0 };
     if zero_m > 0.0 {
         // Low heights bend the COR over the zero: both ends are fitted.
         let by = zero(fits, known, zero_m);

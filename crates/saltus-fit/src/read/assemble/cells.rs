@@ -21,9 +21,10 @@ impl Builder<'_> {
     pub(super) fn wordy(&self, row: usize, column: usize) -> bool {
         let view = self.region.view;
         let mostly = || {
-            let cells = || self.region.rows.iter().map(|&row| view.read(row, column));
-            let numbers = cells().filter(|cell| matches!(cell, Cell::Number(_))).count();
-            numbers > 2 * cells().filter(|cell| *cell == Cell::Words).count()
+            let cells = || self.region.rows.iter().map(|&row| (view.read(row, column), view.cell(row, column)));
+            let number = |(read, cell): &(Cell, &str)| matches!(read, Cell::Number(_)) || clock(cell).is_some();
+            let words = |(read, cell): &(Cell, &str)| *read == Cell::Words && clock(cell).is_none();
+            cells().filter(number).count() > 2 * cells().filter(words).count()
         };
         !view.cell(row, column).contains(|c: char| c.is_ascii_digit()) && *self.mostly[column].get_or_init(mostly)
     }

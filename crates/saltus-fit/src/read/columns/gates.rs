@@ -17,6 +17,11 @@ fn words(column: &Column) -> Vec<String> {
     pieces(&column.heading.text).iter().map(|word| folded(word)).collect()
 }
 
+/// Whether a heading is one of two words for a way, and nothing else.
+fn of_way(column: &Column, one: Phrase, other: Phrase) -> bool {
+    column.of_words(one) || column.of_words(other)
+}
+
 impl Column {
     /// Whether its unit is one of time.
     fn timed(&self) -> bool {
@@ -61,22 +66,21 @@ impl Column {
 const LEADS: usize = 3;
 
 impl Columns {
-    /// `before` beside `after`, where a line states the unit of speeds and no other: all columns
-    /// that say no more than that are speeds.
+    /// `before` beside `after`, `down` beside `up`, where a line states the unit of speeds and no
+    /// other: the columns that say no more than that are speeds.
     pub(super) fn sped(&mut self, region: &Region<'_>) {
         let Some(unit) = region.speed else { return };
-        let silent = |c: &Column, v: &Value| {
-            let sided = c.heading.has(Atom::Before) != c.heading.has(Atom::After);
-            sided && v.what == What::Unsaid && v.role == Role::Reading && c.unit.is_none()
+        let sided = |c: &Column, own: Atom, other: Atom| {
+            let silent = c.value().is_some_and(|v| v.what == What::Unsaid && v.role == Role::Reading);
+            silent && c.heading.has(own) && !c.heading.has(other)
         };
-        if !self.values().all(|(_, c, v)| silent(c, v)) {
-            return;
-        }
-        for column in &mut self.columns {
-            let at = if column.heading.has(Atom::Before) { At::Before } else { At::After };
-            if let Kind::Value(value) = &mut column.kind {
-                (value.what, value.at, column.unit) = (What::Speed, at, Some(unit));
-            }
+        let before = |c: &Column| sided(c, Atom::Before, Atom::After) || of_way(c, Phrase::Down, Phrase::Inwards);
+        let after = |c: &Column| sided(c, Atom::After, Atom::Before) || of_way(c, Phrase::UpTo, Phrase::Outwards);
+        let bare = |c: &Column| c.unit.is_none();
+        let Some((before, after)) = self.pair(|c| bare(c) && before(c), |c| bare(c) && after(c)) else { return };
+        for (index, at) in [(before, At::Before), (after, At::After)] {
+            self.becomes(index, What::Speed, at);
+            self.columns[index].unit = Some(unit);
         }
     }
 

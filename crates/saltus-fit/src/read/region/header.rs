@@ -5,12 +5,11 @@ use std::ops::Range;
 use super::super::cell::Cell;
 use super::super::grid::View;
 use super::super::heading::{At, Heading, Meaning, Role, Value, What, is_sign};
-use super::super::phrases::Phrase;
 use super::super::sequence::of_samples;
 use super::super::units::{Dimension, Unit};
-use super::super::vocabulary::{ROWS, meanings};
 use super::super::words::{numbers, split};
 use super::legend::Legend;
+use super::own_lines::{UNITLESS, of_errors, of_units, spelt, united, with_errors};
 
 /// A header: its names, the first of its lines, the first row below, and how much of it is
 /// understood.
@@ -34,7 +33,10 @@ impl Header {
             let heading = Heading::parse(name);
             // What is known to be left aside has its own name too.
             let aside = matches!(heading.meaning, Meaning::Aside(_)) && heading.unknown.is_empty();
+            // A unit by itself is of a name above it.
+            let bare = of_units(&[name.clone(), String::new()]);
             (heading.understood() || aside)
+                && !bare
                 && heading.value().is_none_or(|value| value.what != What::Unsaid || value.role != Role::Reading)
         };
         let own = |n: usize| self.names.get(n).filter(|name| !self.names[..n].contains(name));
@@ -77,7 +79,7 @@ pub(super) fn headers(view: View<'_>, legend: &Legend, row: usize, end: usize) -
         again(lower) && !again(names)
     };
     let mut push = |names: Vec<String>, next: usize| {
-        let names = united(view, &names, next).unwrap_or(names);
+        let names = counted(united(view, &names, next).unwrap_or(names));
         let lower = if next > row + 1 { line(row + 1) } else { Vec::new() };
         let bare = |name: &String| name.rsplit_once(": ").map_or(name.as_str(), |(_, own)| own).to_owned();
         let own = || score(&names.iter().map(bare).collect::<Vec<_>>()) + 1;
@@ -149,28 +151,6 @@ fn clause_of(view: View<'_>, names: &[String], mut rows: Range<usize>) -> Option
     };
     let mut found = names.iter().filter(says);
     found.next().filter(|_| found.next().is_none()).cloned()
-}
-
-/// The names of columns below which a unit in brackets stands alone at the end, above no number:
-/// it is that of all that bear none, `drop  rebound  (cm)`.
-fn united(view: View<'_>, names: &[String], next: usize) -> Option<Vec<String>> {
-    let last = names.iter().rposition(|name| !name.is_empty())?;
-    let bare = names[last].strip_prefix(['(', '['])?.strip_suffix([')', ']'])?;
-    let unit = Unit::parse(bare).filter(|unit| matches!(unit.dimension, Dimension::Length | Dimension::Time))?;
-    let empty = (next..view.rows()).take(ROWS).all(|row| view.cell(row, last).is_empty());
-    let counts = |n: usize| (next..view.rows()).take(ROWS).all(|row| view.cell(row, n).parse::<usize>().is_ok());
-    let named = |(n, name): (usize, &String)| {
-        let heading = Heading::parse(name);
-        let measured = format!("{name} {}", names[last]);
-        let fits = |v: &Value| v.what.dimension().is_none_or(|d| d == unit.dimension);
-        // `rebound` above anything but a count is of a height.
-        let counted = matches!(heading.meaning, Meaning::Number { .. }) && !counts(n);
-        let of_unit =
-            heading.value().is_some_and(fits) || counted && Heading::parse(&measured).value().is_some_and(fits);
-        if of_unit && heading.unit.is_none() { measured } else { name.clone() }
-    };
-    let found: Vec<String> = names[..last].iter().enumerate().map(named).collect();
-    (empty && last > 0 && found[..] != names[..last]).then_some(found)
 }
 
 /// Whether a row holds a cell of words and nothing else, where several columns are named: it is no
@@ -316,6 +296,7 @@ pub(super) fn both(upper: &[String], lower: &[String]) -> Option<Vec<String>> {
     let again = |n: usize| again(lower, n);
     let repeated = (0..width).any(|n| again(n).next().is_some());
     let told = tells_apart(upper, lower);
+    let written = spelt_out(upper, lower);
     // `Ball,Golf,,Tennis` above names that come again: of each block what stands above it.
     let above = if repeated { blocks(upper, lower).unwrap_or(above) } else { above };
     let name = |n: usize| match (above[n].as_str(), cell(lower, n)) {
@@ -335,7 +316,7 @@ pub(super) fn both(upper: &[String], lower: &[String]) -> Option<Vec<String>> {
         (name, lower) if repeated => format!("{name}: {lower}"),
         (name, lower) => spanned(name, &lower),
     };
-    (merged || told).then(|| (0..width).map(name).collect())
+    (merged || told || written).then(|| (0..width).map(name).collect())
 }
 
 /// The other columns of the same name.
@@ -350,6 +331,31 @@ fn tells_apart(upper: &[String], lower: &[String]) -> bool {
     let mut of_several = (0..lower.len()).filter(|&n| again(lower, n).next().is_some()).peekable();
     let apart = |n: usize| above(n).is_some() && again(lower, n).all(|m| above(m) != above(n));
     of_several.peek().is_some() && of_several.all(apart)
+}
+
+/// Whether a name that spans several columns is written in each of them, `Rebound` three times,
+/// above what tells these apart: `min (cm)`, `max (cm)`, `mean (cm)`.
+fn spelt_out(upper: &[String], lower: &[String]) -> bool {
+    let alike = |n: &usize| again(upper, *n).any(|m| m.abs_diff(*n) == 1);
+    let named = |n: usize| lower.get(n).is_some_and(|name| name.contains(char::is_alphabetic));
+    let mut spanned = (0..upper.len()).filter(alike).peekable();
+    spanned.peek().is_some() && spanned.all(|n| named(n) && again(lower, n).next().is_none())
+}
+
+/// Names of which some come again next to one another are of repeats, where heights of release
+/// stand beside them: `release (m)`, `rebound (m)`, `rebound (m)`.
+fn counted(names: Vec<String>) -> Vec<String> {
+    let value = |name: &str| Heading::parse(name).value().cloned();
+    let released = |v: Value| (v.what, v.at) == (What::Height, At::Release);
+    let read = |v: Value| v.what == What::Height && v.at != At::Release && v.trial.is_empty();
+    if repeated(&names).is_some() || !names.iter().filter_map(|name| value(name)).any(released) {
+        return names;
+    }
+    let place = |n: usize| names[..n].iter().rev().take_while(|name| **name == names[n]).count() + 1;
+    let several = |n: usize| place(n) > 1 || names.get(n + 1) == Some(&names[n]);
+    let of_repeats = |n: usize| several(n) && value(&names[n]).is_some_and(read);
+    let name = |n: usize| if of_repeats(n) { format!("trial {}, {}", place(n), names[n]) } else { names[n].clone() };
+    (0..names.len()).map(name).collect()
 }
 
 /// Whether a name that is a sign, with the unit of it, `h1 [cm]`, stands above the words that say
@@ -425,57 +431,4 @@ fn spanned(name: &str, lower: &str) -> String {
     } else {
         format!("{lower}, {name}")
     }
-}
-
-/// A unit in a line of them without the brackets around it, and without the word before it: `(cm)`,
-/// `in cm`.
-fn spelt(cell: &str) -> &str {
-    let bare = cell.trim_matches(['(', ')', '[', ']']).trim();
-    bare.split_once(' ').filter(|(word, _)| Phrase::In.is(word)).map_or(bare, |(_, unit)| unit.trim())
-}
-
-/// What stands for the unit of a count, in a line of units.
-const UNITLESS: [&str; 9] = ["#", "n", "no.", "nr.", "-", "–", "—", "/", "1"];
-
-/// Whether a line holds errors of reading, and units of columns without one, and nothing else: `±1
-/// °C`, `(± 0.01 m)`, `cm`.
-fn of_errors(line: &[String]) -> bool {
-    let filled = || line.iter().filter(|cell| !cell.is_empty());
-    filled().any(|cell| is_error(cell)) && filled().all(|cell| is_error(cell) || of_units(std::slice::from_ref(cell)))
-}
-
-/// Whether a cell is an error of reading.
-fn is_error(cell: &str) -> bool {
-    let bare = cell.trim_start_matches(['(', '[']);
-    let size = ["±", "+/-", "+-"].iter().find_map(|mark| bare.strip_prefix(mark));
-    size.is_some_and(|size| size.trim_start().starts_with(|c: char| c.is_ascii_digit()))
-}
-
-/// The names of columns, each with the error that stands below the name in `upper` that spans it.
-fn with_errors(upper: &[String], names: Vec<String>, errors: &[String]) -> Vec<String> {
-    let mut spanning = "";
-    let mut name = |(n, name): (usize, String)| {
-        if upper.get(n).is_some_and(|cell| !cell.is_empty()) {
-            spanning = errors.get(n).map_or("", String::as_str);
-        }
-        match spanning {
-            _ if name.is_empty() || spanning.is_empty() => name,
-            error if is_error(error) => format!("{name} {error}"),
-            unit => format!("{name} ({})", spelt(unit)),
-        }
-    };
-    names.into_iter().enumerate().map(&mut name).collect()
-}
-
-/// Whether a line holds units and nothing else.
-pub(super) fn of_units(line: &[String]) -> bool {
-    let unit = |cell: &str| Unit::parse(spelt(cell)).is_some();
-    let cells = || line.iter().filter(|cell| !UNITLESS.contains(&cell.as_str()));
-    // In brackets there may be others that are not known.
-    let bracketed = |cell: &str| cell.starts_with(['(', '[']) && cell.ends_with([')', ']']);
-    // A letter by itself is a sign of what stands below: `t`, `h`.
-    let sign =
-        |cell: &str| line.len() == 1 && meanings(cell).is_some_and(|atoms| atoms.iter().any(|atom| atom.measures()));
-    let known = cells().any(|cell| unit(cell) && !sign(cell));
-    known && cells().all(|cell| cell.is_empty() || unit(cell) || bracketed(cell))
 }
