@@ -212,6 +212,7 @@ proptest! {
         for said in [
             "The first bounce was too fast so we nearly always took the second",
             "heights are of the second bounce",
+            "bounce read: the second, not the first",
             "read after the 3rd rebound",
             "Höhe nach dem zweiten Aufprall",
             "hauteur du deuxième rebond",
@@ -226,6 +227,8 @@ proptest! {
             "The second trial of each bounce is beside the first",
             "rebounds read by the second person",
             "not the second bounce",
+            "the second bounce was not read",
+            "second rebound: not measured",
             "bounces filmed at 240 frames per second",
             "the first bounce of each drop",
         ] {

@@ -191,22 +191,31 @@ pub(super) fn of_a_later(table: &Table, text: &str) -> bool {
     let mut readings = table.trials.iter().flat_map(|trial| &trial.readings);
     let later = readings.any(|reading| reading.bounce > 1 || reading.time.is_some())
         || table.trials.iter().any(|trial| trial.timed.is_some());
-    let words = split(text);
     let rebounds = |word: &Word| word.is(Atom::Rebound) || word.is(Atom::Impact);
-    if later || !words.iter().any(rebounds) || frame_rate(text).is_some() {
+    if later || !split(text).iter().any(rebounds) || frame_rate(text).is_some() {
         return false;
     }
-    // Behind a number it is a unit of time.
-    let unit = |at: usize| at > 0 && matches!(words[at - 1].kind, Kind::Number(_));
-    let counts = |at: usize| match words[at].kind {
-        Kind::Ordinal(place) => place > 1,
-        Kind::Known(atoms) => atoms.iter().any(|atom| matches!(atom, Atom::Ordinal(place) if *place > 1)),
-        _ => false,
+    let denies = |word: &Word| denies(&folded(&word.text));
+    let filler = |word: &&Word| matches!(word.kind, Kind::Known([Atom::Filler])) && !denies(word);
+    let counts = |words: &[Word], at: usize| {
+        // Behind a number it is a unit of time.
+        let unit = at > 0 && matches!(words[at - 1].kind, Kind::Number(_));
+        !unit
+            && match words[at].kind {
+                Kind::Ordinal(place) => place > 1,
+                Kind::Known(atoms) => atoms.iter().any(|atom| matches!(atom, Atom::Ordinal(place) if *place > 1)),
+                _ => false,
+            }
     };
-    (0..words.len()).any(|at| {
-        let denied = words[at.saturating_sub(DENIED)..at].iter().any(|word| denies(&folded(&word.text)));
-        let next = words[at + 1..].iter().find(|word| !matches!(word.kind, Kind::Known([Atom::Filler])));
-        counts(at) && !unit(at) && !denied && next.is_none_or(rebounds)
+    clauses(text).any(|clause| {
+        let words = split(clause);
+        (0..words.len()).filter(|&at| counts(&words, at)).any(|at| {
+            let mut behind = words[at + 1..].iter().skip_while(filler);
+            let counted = behind.next().is_none_or(rebounds);
+            let denied = words[at.saturating_sub(DENIED)..at].iter().any(denies)
+                || behind.find(|word| !filler(word)).is_some_and(denies);
+            counted && !denied
+        })
     })
 }
 

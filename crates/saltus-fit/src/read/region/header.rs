@@ -214,14 +214,17 @@ fn numbered(view: View<'_>, upper: &[String], row: usize) -> Option<Vec<String>>
             return None;
         }
         counted += usize::from(count > 1);
-        // Its unit stays behind the slash: `height / m`.
-        let parts = spanning.rsplit_once('/').filter(|(_, unit)| Unit::parse(unit).is_some());
-        names.push(match parts {
-            Some((name, unit)) => format!("{} {count} / {}", name.trim_end(), unit.trim()),
-            None => format!("{spanning} {count}"),
-        });
+        names.push(with_count(&spanning, count));
     }
     (counted > 0 && view.cell(row, 0).is_empty()).then_some(names)
+}
+
+/// A name and its count, the unit staying behind the slash: `height 2 / m`.
+fn with_count(name: &str, count: usize) -> String {
+    match name.rsplit_once('/').filter(|(_, unit)| Unit::parse(unit).is_some()) {
+        Some((name, unit)) => format!("{} {count} / {}", name.trim_end(), unit.trim()),
+        None => format!("{name} {count}"),
+    }
 }
 
 /// How much of a header is understood.
@@ -342,19 +345,25 @@ fn spelt_out(upper: &[String], lower: &[String]) -> bool {
     spanned.peek().is_some() && spanned.all(|n| named(n) && again(lower, n).next().is_none())
 }
 
-/// Names of which some come again next to one another are of repeats, where heights of release
-/// stand beside them: `release (m)`, `rebound (m)`, `rebound (m)`.
+/// Names of which some come again next to one another are counted, where heights of release stand
+/// beside them: `release (m)`, `rebound (m)`, `rebound (m)`. One that names its bounce is of
+/// trials.
 fn counted(names: Vec<String>) -> Vec<String> {
     let value = |name: &str| Heading::parse(name).value().cloned();
     let released = |v: Value| (v.what, v.at) == (What::Height, At::Release);
-    let read = |v: Value| v.what == What::Height && v.at != At::Release && v.trial.is_empty();
     if repeated(&names).is_some() || !names.iter().filter_map(|name| value(name)).any(released) {
         return names;
     }
     let place = |n: usize| names[..n].iter().rev().take_while(|name| **name == names[n]).count() + 1;
     let several = |n: usize| place(n) > 1 || names.get(n + 1) == Some(&names[n]);
-    let of_repeats = |n: usize| several(n) && value(&names[n]).is_some_and(read);
-    let name = |n: usize| if of_repeats(n) { format!("trial {}, {}", place(n), names[n]) } else { names[n].clone() };
+    let name = |n: usize| {
+        let of = value(&names[n]).filter(|v| v.what == What::Height && v.trial.is_empty() && several(n));
+        match of.map(|v| v.at) {
+            None | Some(At::Release) => names[n].clone(),
+            Some(At::Nth(_)) => format!("trial {}, {}", place(n), names[n]),
+            Some(_) => with_count(&names[n], place(n)),
+        }
+    };
     (0..names.len()).map(name).collect()
 }
 
