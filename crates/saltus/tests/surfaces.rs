@@ -84,6 +84,25 @@ proptest! {
         prop_assert_eq!(run.is_ok(), right, "{:?}", run.err());
     }
 
+    /// The circle met beside an axis, where one part of its gradient is so small that the rounding of
+    /// the other hides it: it is believed, and the large one still is not where it is half of it.
+    #[test]
+    fn what_rounding_hides_of_a_gradient_is_believed(power in -9.0..9.0_f64, small in 0.0..14.0_f64, swap in any::<bool>(), right in any::<bool>()) {
+        let radius = 10_f64.powf(power);
+        let by = if right { 2.0 } else { 1.0 };
+        let rim = Filippov::of(Sides::new(
+            |_, x: &Vector2<f64>| -x,
+            |_, x| *x,
+            move |_, x| x.norm_squared() - radius * radius,
+            move |_, x| by * x,
+        ));
+        let angle = 10_f64.powf(-small);
+        let beside = vector![angle.cos(), angle.sin()] * (1.5 * radius);
+        let start = if swap { vector![beside[1], beside[0]] } else { beside };
+        let run = Simulation::of(&rim).run(Side::Above, start, 0.0..2.0);
+        prop_assert_eq!(run.is_ok(), right, "{:?}", run.err());
+    }
+
     /// What a kink, a leap or a table hides is believed: a floor whose speed changes at the very
     /// start, with either of its speeds.
     #[test]

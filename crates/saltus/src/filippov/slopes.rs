@@ -42,9 +42,9 @@ impl fmt::Display for Untrue {
 
 /// The first derivative of the surface at (t, x) that its differences contradict.
 ///
-/// Only what is sure counts: differences to both sides agree with each other over three steps in a
-/// row, and with the derivative over no two. A kink, a leap or a rounding hides what they show, and
-/// is believed.
+/// Only what is sure counts: differences to both sides, each a thousand times their rounding, agree
+/// with each other over three steps in a row, and with the derivative over no two. A kink, a leap or
+/// a rounding hides what they show, and is believed.
 pub(super) fn untrue<T: TwoSided + ?Sized>(system: &T, t: f64, x: &T::State) -> Option<Untrue> {
     let moved = |i: usize, by: f64| x.with(|j| if j == i { x.get(j) + by } else { x.get(j) });
     let rate = system.surface_rate(t, x);
@@ -62,24 +62,29 @@ pub(super) fn untrue<T: TwoSided + ?Sized>(system: &T, t: f64, x: &T::State) -> 
 fn contradicted(h: impl Fn(f64) -> f64, size: f64, given: f64) -> Option<f64> {
     let here = h(0.0);
     let middle = if size == 0.0 { MIDDLE } else { size.abs() * MIDDLE };
-    let slopes = |k: i32| {
-        let step = middle * 4_f64.powi(k);
-        [(h(step) - here) / step, (here - h(-step)) / step]
-    };
-    let agrees = |slopes: &[f64; 2]| slopes.iter().any(|&slope| alike(slope, given));
-    if agrees(&slopes(0)) {
+    let step = |k: i32| middle * 4_f64.powi(k);
+    let differences = |step: f64| [h(step) - here, here - h(-step)];
+    let agrees = |step: f64, all: &[f64; 2]| all.iter().any(|difference| alike(difference / step, given));
+    if agrees(step(0), &differences(step(0))) {
         return None;
     }
-    let slopes: Vec<_> = (-STEPS / 2..=STEPS / 2).map(slopes).collect();
+    let all: Vec<(f64, [f64; 2])> = (-STEPS / 2..=STEPS / 2).map(step).map(|step| (step, differences(step))).collect();
     // Over one small step rounding may show anything, and nothing over several.
-    if given != 0.0 && slopes.windows(2).any(|two| two.iter().all(agrees)) {
+    if given != 0.0 && all.windows(2).any(|two| two.iter().all(|(step, all)| agrees(*step, all))) {
         return None;
     }
-    let stable = |window: &&[[f64; 2]]| {
-        let first = window[0][0];
-        first != 0.0 && window.iter().flatten().all(|&slope| alike(slope, first))
+    // The least of them is a rounding of h, or more: a multiple of it tells a slope as well as it is
+    // large.
+    let sizes = || all.iter().flat_map(|(_, all)| all).map(|difference| difference.abs());
+    let least = sizes().filter(|size| *size > 0.0).fold(f64::INFINITY, f64::min);
+    let tells = |difference: f64| difference.abs() * ALIKE >= least;
+    let stable = |window: &&[(f64, [f64; 2])]| {
+        let (step, [first, _]) = window[0];
+        let slopes = window.iter().flat_map(|(step, all)| all.map(|difference| difference / step));
+        window.iter().flat_map(|(_, all)| all).all(|difference| tells(*difference))
+            && slopes.into_iter().all(|slope| alike(slope, first / step))
     };
-    slopes.windows(3).find(stable).map(|window| window[1][0])
+    all.windows(3).find(stable).map(|window| window[1].1[0] / window[1].0)
 }
 
 fn alike(a: f64, b: f64) -> bool {
