@@ -84,8 +84,8 @@ proptest! {
         prop_assert_eq!(run.is_ok(), right, "{:?}", run.err());
     }
 
-    /// The circle met beside an axis, where one part of its gradient is so small that the rounding of
-    /// the other hides it: it is believed, and the large one still is not where it is half of it.
+    /// The circle met beside an axis, where one part of its gradient is so small that the rounding
+    /// of the other hides it: it is believed, and the large one is not where it is half of it.
     #[test]
     fn what_rounding_hides_of_a_gradient_is_believed(power in -9.0..9.0_f64, small in 0.0..14.0_f64, swap in any::<bool>(), right in any::<bool>()) {
         let radius = 10_f64.powf(power);

@@ -43,8 +43,8 @@ impl fmt::Display for Untrue {
 /// The first derivative of the surface at (t, x) that its differences contradict.
 ///
 /// Only what is sure counts: differences to both sides, each a thousand times their rounding, agree
-/// with each other over three steps in a row, and with the derivative over no two. A kink, a leap or
-/// a rounding hides what they show, and is believed.
+/// with each other over three steps in a row, and with the derivative over no two. A kink, a leap
+/// or a rounding hides what they show, and is believed.
 pub(super) fn untrue<T: TwoSided + ?Sized>(system: &T, t: f64, x: &T::State) -> Option<Untrue> {
     let moved = |i: usize, by: f64| x.with(|j| if j == i { x.get(j) + by } else { x.get(j) });
     let rate = system.surface_rate(t, x);
@@ -73,8 +73,8 @@ fn contradicted(h: impl Fn(f64) -> f64, size: f64, given: f64) -> Option<f64> {
     if given != 0.0 && all.windows(2).any(|two| two.iter().all(|(step, all)| agrees(*step, all))) {
         return None;
     }
-    // The least of them is a rounding of h, or more: a multiple of it tells a slope as well as it is
-    // large.
+    // The least of them is a rounding of h, or more: a multiple of it tells a slope as well as it
+    // is large.
     let sizes = || all.iter().flat_map(|(_, all)| all).map(|difference| difference.abs());
     let least = sizes().filter(|size| *size > 0.0).fold(f64::INFINITY, f64::min);
     let tells = |difference: f64| difference.abs() * ALIKE >= least;
